@@ -13,24 +13,27 @@ from ._errors import SetupError, how_to_have
 from ._repel import (QUERY_ENDS, ArmKinematics, Cell, Command, ForceLaw, QueryOptions, Separation,
                      Shape, Tick, WarmStart, WarmStarts, World, separation)
 from ._separations import SEPARATION, separations
-from .description import Admittance, Arm, Capacities, Kinematics, Link, Obstacle, Part
+from .description import Admittance, Arm, Capacities, Kinematics, Link, Loose, Obstacle, Part
 from .program import program, run, view
 from .recording import Recording, read_recording
 
 if TYPE_CHECKING:
-    from ._repel import Cover, Scene, ScriptedOperator, SimulatedArm, cover, load_scene
+    from ._repel import (Cover, DepthCamera, LiveView, Scene, ScriptedOperator, SimulatedArm, cover,
+                         load_scene)
 
 __version__ = "0.2.0"
 
 __all__ = ["Admittance", "Arm", "ArmKinematics", "Capacities", "Cell", "Command", "Cover",
-           "ForceLaw", "Kinematics", "Link", "Obstacle", "Part", "QUERY_ENDS", "QueryOptions",
-           "Recording", "SEPARATION", "Scene", "ScriptedOperator", "Separation", "SetupError",
-           "Shape", "SimulatedArm", "Tick", "WarmStart", "WarmStarts", "World", "cover",
-           "load_scene", "program", "read_recording", "run", "separation", "separations", "view"]
+           "DepthCamera", "ForceLaw", "Kinematics", "Link", "LiveView", "Loose", "Obstacle",
+           "Part", "QUERY_ENDS", "QueryOptions", "Recording", "SEPARATION", "Scene",
+           "ScriptedOperator", "Separation", "SetupError", "Shape", "SimulatedArm", "Tick",
+           "WarmStart", "WarmStarts", "World", "cover", "load_scene", "program", "read_recording",
+           "run", "separation", "separations", "view"]
 
 #: What a build leaves out when packages are missing, and the part of it that is left out.
 _PARTS = {"Scene": "scenes", "ScriptedOperator": "scenes", "SimulatedArm": "scenes",
-          "load_scene": "scenes", "Cover": "covers", "cover": "covers"}
+          "load_scene": "scenes", "Cover": "covers", "cover": "covers", "DepthCamera": "cameras",
+          "LiveView": "views"}
 
 for _name in _PARTS:
     if hasattr(_repel, _name):

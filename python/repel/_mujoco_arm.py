@@ -105,7 +105,7 @@ class ModelArm:
         there = [repr(name_of(model, "site", i)) for i in range(model.nsite)]
         raise SetupError(f"site is '{name}'; allowed: {', '.join(there + ['the name of a body'])}")
 
-    def _between(self, a: int, b: int) -> set[int]:
+    def between(self, a: int, b: int) -> set[int]:
         """The joints that move one body against the other."""
         joints: set[int] = set()
         while a != b:
@@ -130,7 +130,7 @@ class ModelArm:
             elif kind in (wrap.mjWRAP_SPHERE, wrap.mjWRAP_CYLINDER):
                 body = int(model.geom_bodyid[index])
             if before is not None and body is not None:
-                joints |= self._between(before, body)
+                joints |= self.between(before, body)
             before = body  # none behind a pulley, where it begins anew
         return joints
 
@@ -146,7 +146,7 @@ class ModelArm:
             return set()  # of a flex, which is no body of an arm
         if model.eq_objtype[i] == mujoco.mjtObj.mjOBJ_SITE:
             ends = [int(model.site_bodyid[end]) for end in ends]
-        return self._between(*ends)
+        return self.between(*ends)
 
     def _require_no_ties(self, active: Any) -> None:
         """Raises SetupError for a constraint or tendon that acts on the joints of the arm.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The scenes that the package has."""
+"""The scenes that the package has, and the page of the live view."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from typing import Any
 
 from ._errors import SetupError
 
-FOLDER = Path(__file__).with_name("share") / "repel" / "scenes"
+_SHARE = Path(__file__).with_name("share") / "repel"
+FOLDER = _SHARE / "scenes"
+PAGE = str(_SHARE / "page")
 
 
 def names() -> list[str]:

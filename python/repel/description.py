@@ -73,7 +73,8 @@ class Part:
 class Capacities:
     """How much a World or a Cell can hold: it takes its memory once."""
 
-    bodies: int = 64  #: with the fixed one
+    bodies: int = 64  #: with the fixed one, without loose parts
+    loose: int = 256  #: parts, see Loose
     parts: int = 20000  #: of all bodies
     pairs: int = 1 << 20  #: of parts
     candidates: int = 1 << 14  #: pairs that can soon come within range, at one time
@@ -193,3 +194,19 @@ class Obstacle:
     law: ForceLaw | None = None  #: none: ForceLaw()
     along_W: Any = None  #: (3,) [m] to the far end of its motion to and fro; none: it is fixed
     duration: float = 1.0  #: [s] of that motion, there and back
+
+
+@dataclass
+class Loose:
+    """A convex part of the environment that comes and goes, is moved and is held by a tool while a
+    Cell runs: see its `add`."""
+
+    name: str
+    shape: Shape
+    X_WP: Any = None  #: pose [m] where it comes, unless it is said; none: the world
+    law: ForceLaw | None = None  #: none: ForceLaw()
+    at_start: bool = False  #: it is there from the start on
+    room: float = 0.0  #: [m] largest reach of its later shapes; 0: it keeps `shape`
+    mass: float = 0.0  #: [kg] at the origin of its shape: its weight on a tool
+    is_mass_known: bool = True  #: to the controller, not only to a simulated arm
+    can_be_held: bool = True  #: without, it has pairs with arms only: many are affordable

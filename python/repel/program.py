@@ -12,14 +12,16 @@ import tempfile
 import webbrowser
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from . import _repel
 from ._errors import SetupError, how_to_have
 from ._scenes import path_of
 
 if TYPE_CHECKING:
-    from ._repel import Tick
+    from ._repel import Command, Tick
+
+    Hands: TypeAlias = Command | Sequence[Command | None] | None
 
 #: What the exit codes of the program say beside "it ran".
 _REFUSED = (1, 2)
@@ -57,15 +59,17 @@ def _refusal(text: str, status: int) -> SetupError:
 
 def run(scene: Any, *, seconds: float = 20.0, fast: bool = True, rate_hz: float | None = None,
         backend: str | None = None, log: str | os.PathLike[str] | None = None,
-        on_tick: Callable[[list[Tick]], object] | None = None, stop: Any = None,
+        on_tick: Callable[[list[Tick]], Hands] | None = None, every: int = 1, stop: Any = None,
         arguments: Sequence[str] = ()) -> dict[str, Any]:
     """Runs a scene and returns its report, the object that `teleop run --report` writes.
 
     scene: a Scene, the path of a scene file, or the name of one that comes with the package.
     seconds [s] of scene time. fast: not by the clock, bitwise repeatable, and the same bits as
     `teleop run --fast`. log: a file for every tick, a recording if its name ends in .mcap, else
-    CSV; see read_recording. on_tick: called after each tick with the list of the ticks of all arms;
-    what it raises ends the run and is raised here. stop: an Event of threading; once it is set the
+    CSV; see read_recording. on_tick: called after each `every` ticks with the list of the ticks of
+    all arms. It may return what operators do until it is called again, in place of the script: a
+    Command of the first arm, or a list with a Command or None for each arm; None: the script goes
+    on. What it raises ends the run and is raised here. stop: an Event of threading; once it is set the
     forces fade and the run ends. arguments: further ones of `teleop run --help`; with them, and in
     a build without runs, the program runs as a child, without on_tick and stop.
 
@@ -80,7 +84,8 @@ def run(scene: Any, *, seconds: float = 20.0, fast: bool = True, rate_hz: float 
         return _run_child(scene, seconds, fast, rate_hz, backend, log, arguments)
     text, status = _repel.run_scene(
         path_of(getattr(scene, "file", scene)), seconds=seconds, fast=fast, rate_hz=rate_hz,
-        backend=backend, log="" if log is None else os.fspath(log), on_tick=on_tick, stop=stop)
+        backend=backend, log="" if log is None else os.fspath(log), on_tick=on_tick,
+        every=every, stop=stop)
     return {**json.loads(text), "exit_status": status}
 
 

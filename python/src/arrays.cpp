@@ -93,11 +93,14 @@ void refuse_shape(const Array& found, const char* name, const char* expected) {
 
 Array array_of(nb::handle value, const char* name, const char* expected) {
   Array array;
-  const nb::module_ numpy = nb::module_::import_("numpy");
+  // Kept for the process: to look it up takes as long as the rest.
+  static const nb::handle ndarray =
+      nb::object(nb::module_::import_("numpy").attr("ndarray")).release();
   // All else, NumPy reads: nanobind crashes on some of what has a buffer, as a datetime64.
-  if (value.type().is(numpy.attr("ndarray")) && nb::try_cast(value, array, false)) return array;
+  if (value.type().is(ndarray) && nb::try_cast(value, array, false)) return array;
   std::string type = nb::cast<std::string>(nb::handle(value.type()).attr("__name__"));
   try {
+    const nb::module_ numpy = nb::module_::import_("numpy");
     const nb::object found = call_method(numpy, "asarray", value);
     const std::string kind = nb::cast<std::string>(found.attr("dtype").attr("kind"));
     if (kind == "f" || kind == "i" || kind == "u") {

@@ -29,6 +29,10 @@ using Array = nb::ndarray<const double, nb::numpy, nb::c_contig, nb::device::cpu
 /// @throws nanobind::value_error: "NAME: expected EXPECTED, got an array of shape (...)"
 [[noreturn]] void refuse_shape(const Array& found, const char* name, const char* expected);
 
+/// The type of what `pose_of` takes, for signatures.
+inline const std::string pose_type =
+    "numpy.typing.ArrayLike | tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike]";
+
 /// A rigid pose [m]: 4 x 4 numbers, or a pair of position (3,) and unit quaternion w, x, y, z (4,).
 /// @throws SetupError for numbers that are not finite or not rigid
 [[nodiscard]] Pose pose_of(nb::handle value, const char* name);

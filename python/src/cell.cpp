@@ -108,6 +108,7 @@ Tick OwnCell::step(nb::handle q, nb::handle v, const network::Command& hands,
     const Released others_go_on;
     record = &cell_->step(own.readings(), hands, time);
   }
+  records_.assign(1, record);
   raise(trouble_);
   return tick_of(0, *record, own);
 }
@@ -161,6 +162,7 @@ std::vector<Tick> OwnCell::act(const std::vector<network::Command>& hands) {
       const Released others_go_on;
       records = cell_->act(hands);
     }
+    records_.assign(records.begin(), records.end());
     for (std::size_t i = 0; i < records.size(); ++i)
       ticks.push_back(tick_of(i, *records[i], sensed_[i]));
   }
@@ -256,11 +258,11 @@ void bind_cell(nb::module_& m) {
                            "them, with all checks. Not for two threads at once.");
   cell.def(
           "__init__",
-          [](OwnCell* self, double rate_hz, nb::handle arms, nb::handle obstacles,
+          [](OwnCell* self, double rate_hz, nb::handle arms, nb::handle obstacles, nb::handle loose,
              const std::string& gain_check, const std::string& start_inside, nb::handle limits,
              const std::string& measure, int threads, const std::string& mode) {
             const Trouble trouble = std::make_shared<std::optional<nb::python_error>>();
-            OwnDescription description = described(rate_hz, arms, obstacles, trouble);
+            OwnDescription description = described(rate_hz, arms, obstacles, loose, trouble);
             description.cell.gain_check = gain_check_of(gain_check);
             description.cell.start_inside = start_inside_of(start_inside);
             description.cell.limits = capacities_of(limits);
@@ -271,16 +273,18 @@ void bind_cell(nb::module_& m) {
             new (self) OwnCell(std::move(description), trouble);
           },
           nb::kw_only(), nb::arg("rate_hz"), nb::arg("arms"),
-          nb::arg("obstacles") = nb::make_tuple(), nb::arg("gain_check") = "error",
-          nb::arg("start_inside") = "refuse", nb::arg("limits") = nb::none(),
-          nb::arg("measure") = "deepest_point", nb::arg("threads") = 0,
-          nb::arg("mode") = "together",
+          nb::arg("obstacles") = nb::make_tuple(), nb::arg("loose") = nb::make_tuple(),
+          nb::arg("gain_check") = "error", nb::arg("start_inside") = "refuse",
+          nb::arg("limits") = nb::none(), nb::arg("measure") = "deepest_point",
+          nb::arg("threads") = 0, nb::arg("mode") = "together",
           nb::sig(
               "def __init__(self, *, rate_hz: float, arms: collections.abc.Sequence[repel."
-              "Arm], obstacles: collections.abc.Sequence[repel.Obstacle] = (), gain_check: str "
+              "Arm], obstacles: collections.abc.Sequence[repel.Obstacle] = (), loose: "
+              "collections.abc.Sequence[repel.Loose] = (), gain_check: str "
               "= 'error', start_inside: str = 'refuse', limits: repel.Capacities | None = None, "
               "measure: str = 'deepest_point', threads: int = 0, mode: str = 'together') -> None"),
-          "rate_hz [Hz] of the tick, 1 to 1e5. gain_check of a wall too stiff for it: error, or "
+          "rate_hz [Hz] of the tick, 1 to 1e5. loose: parts that come and go, see `add`. "
+          "gain_check of a wall too stiff for it: error, or "
           "warning (see `warnings`). start_inside: what becomes of an arm that starts in an "
           "obstacle, refuse, push_out (slowly) or allow. limits: how much the cell can hold; none: "
           "Capacities(). measure of an overlap: see QueryOptions. threads of the coprocessor, "

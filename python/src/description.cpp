@@ -136,6 +136,19 @@ ObstacleDescription obstacle_of(nb::handle from) {
   return obstacle;
 }
 
+LooseDescription loose_of(nb::handle from) {
+  LooseDescription loose{.name = nb::cast<std::string>(from.attr("name")),
+                         .shape = nb::cast<Shape>(from.attr("shape"))};
+  loose.X_WP = optional_pose(from, "X_WP");
+  if (const nb::object law = from.attr("law"); !law.is_none()) loose.law = nb::cast<ForceLaw>(law);
+  loose.at_start = nb::cast<bool>(from.attr("at_start"));
+  loose.room = number(from, "room");
+  loose.mass = number(from, "mass");
+  loose.is_mass_known = nb::cast<bool>(from.attr("is_mass_known"));
+  loose.can_be_held = nb::cast<bool>(from.attr("can_be_held"));
+  return loose;
+}
+
 }  // namespace
 
 ArmModel arm_model_of(nb::handle from) {
@@ -156,13 +169,14 @@ Capacities capacities_of(nb::handle from) {
     checked(name, value, 1.0, most, "");
   };
   read("bodies", limits.bodies, 1'000'000);
+  read("loose", limits.loose, 1'000'000);
   read("parts", limits.parts, 10'000'000);
   read("pairs", limits.pairs, 100'000'000);
   read("candidates", limits.candidates, 1'000'000);
   return limits;
 }
 
-OwnDescription described(double rate_hz, nb::handle arms, nb::handle obstacles,
+OwnDescription described(double rate_hz, nb::handle arms, nb::handle obstacles, nb::handle loose,
                          const Trouble& trouble) {
   OwnDescription own;
   own.cell.rate_hz = rate_hz;
@@ -179,6 +193,7 @@ OwnDescription described(double rate_hz, nb::handle arms, nb::handle obstacles,
     }
   }
   for (nb::handle each : obstacles) own.cell.obstacles.push_back(obstacle_of(each));
+  for (nb::handle each : loose) own.cell.loose.push_back(loose_of(each));
   return own;
 }
 

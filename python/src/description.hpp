@@ -40,10 +40,10 @@ inline constexpr std::pair<const char*, double ArmLink::*> link_numbers[] = {
 /// Those of a repel.Capacities; none: as many as C++ has. @throws SetupError
 [[nodiscard]] Capacities capacities_of(nb::handle from);
 
-/// @param arms,obstacles sequences of repel.Arm and repel.Obstacle
+/// @param arms,obstacles,loose sequences of repel.Arm, repel.Obstacle and repel.Loose
 /// @param trouble to which the kinematics report
 /// @throws SetupError or the errors of Python, naming what is wrong
 [[nodiscard]] OwnDescription described(double rate_hz, nb::handle arms, nb::handle obstacles,
-                                       const Trouble& trouble);
+                                       nb::handle loose, const Trouble& trouble);
 
 }  // namespace repel::python

@@ -31,6 +31,8 @@ NB_MODULE(_repel, m) {
   bind_ticks(m);
   bind_kinematics(m);
   bind_cell(m);
+  bind_loose(m);
+  bind_simulations(m);
 #ifdef REPEL_PYTHON_ROBOTS
   bind_robots(m);
 #endif
@@ -42,6 +44,12 @@ NB_MODULE(_repel, m) {
 #endif
 #ifdef REPEL_PYTHON_RECORDINGS
   bind_recordings(m);
+#endif
+#ifdef REPEL_PYTHON_VIEWS
+  bind_views(m);
+#endif
+#ifdef REPEL_PYTHON_CAMERAS
+  bind_cameras(m);
 #endif
 #ifdef REPEL_PYTHON_COVERS
   bind_covers(m);

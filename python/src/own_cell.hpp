@@ -39,6 +39,16 @@ struct OwnReadings {
   [[nodiscard]] ArmReadings readings() const;
 };
 
+/// Who is told of the shapes that loose parts get, as a display.
+class ShapeListener {
+ public:
+  /// The part has this shape from now on.
+  virtual void shaped(PartId part, const Shape& shape) = 0;
+
+ protected:
+  ~ShapeListener() = default;
+};
+
 /// A cell, with the kinematics that are written in Python and the names of its records.
 class OwnCell {
  public:
@@ -58,6 +68,18 @@ class OwnCell {
   /// @throws SetupError if there is no such arm
   [[nodiscard]] std::size_t checked_arm(int arm) const;
   [[nodiscard]] const std::vector<OwnKinematics*>& kinematics() const { return kinematics_; }
+  /// Of all arms, of the last tick; empty: there was none.
+  [[nodiscard]] const std::vector<const TickRecord*>& records() const noexcept { return records_; }
+  /// The loose part of that name. @throws SetupError if there is none
+  [[nodiscard]] PartId loose(const std::string& name) const;
+  /// For as long as a call uses the cell. @throws std::runtime_error if another one does
+  [[nodiscard]] InUse use() { return InUse(is_in_use_); }
+
+  std::vector<ShapeListener*> listeners;  ///< each takes itself out before it ends
+  /// Tells all of them.
+  void tell(PartId part, const Shape& shape) const {
+    for (ShapeListener* listener : listeners) listener->shaped(part, shape);
+  }
 
  private:
   /// The record of an arm, and its motion if it takes that in place of torques.
@@ -70,6 +92,7 @@ class OwnCell {
   std::vector<std::shared_ptr<const TickNames>> names_;
   std::vector<std::optional<JointAdmittance>> ends_;  // of arms that take motion
   std::vector<OwnReadings> sensed_;                   // by the last `sense`
+  std::vector<const TickRecord*> records_;            // of the last tick
   std::chrono::nanoseconds last_{0};
   bool has_sensed_ = false;
   bool is_in_use_ = false;

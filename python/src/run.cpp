@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -12,6 +14,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <repel/runs/engine/session.hpp>
 #include <repel/runs/report/report.hpp>
@@ -26,25 +29,28 @@ namespace {
 /// What Python wants from a run while it goes on.
 class Watcher {
  public:
-  /// @param on_tick called with the list of the ticks of all arms; None: it is not
+  /// @param on_tick called with the list of the ticks of all arms, and may return what their
+  /// operators do next; None: it is not called
+  /// @param every [ticks] it is called
   /// @param stop has `is_set()`, as threading.Event; None: the run ends by itself
-  Watcher(nb::object on_tick, nb::object stop)
-      : on_tick_(std::move(on_tick)), stop_(std::move(stop)) {}
+  Watcher(nb::object on_tick, int every, nb::object stop, std::size_t arms)
+      : hands(arms), on_tick_(std::move(on_tick)), every_(every), stop_(std::move(stop)) {}
 
   /// After each tick, in its thread. An exception ends the run at once and is kept.
   void look(const Cell& cell, std::span<const TickRecord* const> records) {
     // Who wants nothing can still press Ctrl-C.
-    const bool wants = !on_tick_.is_none() || !stop_.is_none();
-    if (!wants && records.front()->tick % 64 != 0) return;
+    const std::int64_t tick = records.front()->tick;
+    const bool calls = !on_tick_.is_none() && tick % every_ == 0;
+    if (!calls && stop_.is_none() && tick % 64 != 0) return;
     const nb::gil_scoped_acquire holds;
     try {
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
       if (!stop_.is_none() && nb::cast<bool>(stop_.attr("is_set")())) ends = true;
-      if (on_tick_.is_none()) return;
+      if (!calls) return;
       if (names_.empty()) names_ = names_of(cell);
       nb::list ticks;
       for (std::size_t i = 0; i < records.size(); ++i) ticks.append(Tick{*records[i], names_[i]});
-      on_tick_(ticks);
+      obey(on_tick_(ticks));
     } catch (...) {
       trouble = std::current_exception();
       ends = at_once = true;
@@ -54,15 +60,37 @@ class Watcher {
   std::atomic<bool> ends{false};
   std::atomic<bool> at_once{false};
   std::exception_ptr trouble;
+  std::vector<std::optional<network::Command>> hands;  ///< see SessionOptions
 
  private:
-  nb::object on_tick_, stop_;
+  /// @param told None, the command of the first arm, or one or None for each arm
+  void obey(const nb::object& told) {
+    std::fill(hands.begin(), hands.end(), std::nullopt);
+    if (told.is_none()) return;
+    if (nb::isinstance<network::Command>(told)) {
+      hands.front() = nb::cast<network::Command>(told);
+      return;
+    }
+    std::vector<std::optional<network::Command>> all;
+    if (!nb::isinstance<nb::sequence>(told) || !nb::try_cast(told, all) ||
+        all.size() != hands.size()) {
+      throw nb::type_error(
+          ("on_tick: expected None, a Command of the first arm, or a sequence of " +
+           std::to_string(hands.size()) + ", a Command or None for each arm")
+              .c_str());
+    }
+    std::copy(all.begin(), all.end(), hands.begin());  // the run reads them where they are
+  }
+
+  nb::object on_tick_;
+  int every_;
+  nb::object stop_;
   std::vector<std::shared_ptr<const TickNames>> names_;
 };
 
 nb::tuple run_scene(const std::string& file, double seconds, bool fast,
                     std::optional<double> rate_hz, const std::optional<std::string>& backend,
-                    const std::string& log, nb::object on_tick, nb::object stop) {
+                    const std::string& log, nb::object on_tick, int every, nb::object stop) {
   const scene::Scene scene = scene::load(file);
   runs::RunOptions options = runs::options_of(scene);
   options.seconds = checked("seconds", seconds, 0.0, 1e6, "s");
@@ -70,11 +98,13 @@ nb::tuple run_scene(const std::string& file, double seconds, bool fast,
   options.rate_hz = checked("rate_hz", rate_hz.value_or(options.rate_hz), 1.0, 1e5, "Hz");
   options.backend = backend.value_or(options.backend);
   options.log = log;
-  Watcher watcher(std::move(on_tick), std::move(stop));
+  checked("every", every, 1.0, 1e9, "ticks");
+  Watcher watcher(std::move(on_tick), every, std::move(stop), scene.partners.size() + 1);
   runs::SessionOptions session;
   session.on_tick = [&watcher](const Cell& cell, std::span<const TickRecord* const> records) {
     watcher.look(cell, records);
   };
+  session.hands = watcher.hands;
   runs::RunResult result;
   {
     const nb::gil_scoped_release others_go_on;
@@ -92,10 +122,11 @@ nb::tuple run_scene(const std::string& file, double seconds, bool fast,
 void bind_runs(nb::module_& m) {
   m.def("run_scene", &run_scene, nb::arg("file"), nb::kw_only(), nb::arg("seconds"),
         nb::arg("fast"), nb::arg("rate_hz").none(), nb::arg("backend").none(), nb::arg("log"),
-        nb::arg("on_tick").none(), nb::arg("stop").none(),
-        nb::sig("def run_scene(file: str, *, seconds: float, fast: bool, rate_hz: float | None, "
-                "backend: str | None, log: str, on_tick: typing.Any, stop: typing.Any) -> "
-                "tuple[str, int]"),
+        nb::arg("on_tick").none(), nb::arg("every"), nb::arg("stop").none(),
+        nb::sig(
+            "def run_scene(file: str, *, seconds: float, fast: bool, rate_hz: float | None, "
+            "backend: str | None, log: str, on_tick: typing.Any, every: int, stop: typing.Any) -> "
+            "tuple[str, int]"),
         "See repel.run: the report as JSON, and the exit status of teleop.");
 }
 

@@ -224,8 +224,8 @@ void bind_scenes(nb::module_& m) {
                   nb::sig("def from_scene(scene: Scene | str | os.PathLike[str], rate_hz: float | "
                           "None = None, *, gravity: bool = True) -> Cell"),
                   "The cell of a scene: its arms, obstacles and networks. rate_hz [Hz]; none: that "
-                  "of the scene. gravity: false for arms without weight. Cameras see nothing, and "
-                  "parts that come and go stay as they are. Of the budget of the scene what is "
+                  "of the scene. gravity: false for arms without weight. Cameras see nothing. "
+                  "Parts that come and go are those of `loose`. Of the budget of the scene what is "
                   "counted applies, not the time.");
   bind_operator(m);
   bind_simulated_arm(m);

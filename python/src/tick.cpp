@@ -130,16 +130,18 @@ nb::object value_of(const Tick& tick, const Value& x) {
 
 void add_fields(TickBinding& binding) {
   const TickRecord none;
+  int count = 0;
   for_each_field(
       [&](const TickField& field, const auto& x) {
-        const std::string name = field.name;
-        if (name.empty()) return;
+        const int place = count++;
+        if (*field.name == '\0') return;
         const auto [type, doc] = doc_of<std::remove_cvref_t<decltype(x)>>(field.what);
-        binding.add(field.name, type, doc.c_str(), [name](const Tick& tick) {
+        binding.add(field.name, type, doc.c_str(), [place](const Tick& tick) {
           nb::object found;
+          int at = 0;
           for_each_field(
-              [&](const TickField& each, const auto& y) {
-                if (each.name == name) found = value_of(tick, y);
+              [&](const TickField& /*field*/, const auto& y) {
+                if (at++ == place) found = value_of(tick, y);
               },
               tick.record);
           return found;

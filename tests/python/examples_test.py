@@ -100,6 +100,17 @@ def test_the_types_of_the_package_hold(tmp_path):
     assert checked.returncode == 0, checked.stdout
 
 
+def test_a_program_of_the_whole_package_passes_the_type_checker(tmp_path):
+    pytest.importorskip("mypy")
+    if repel._left_out.PACKAGES or not hasattr(repel._repel, "LiveView"):
+        pytest.skip("built without some of its parts")
+    checked = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir",
+                              str(tmp_path), "--follow-imports", "silent",
+                              str(ROOT / "tests/python/typed_program.py")], cwd=tmp_path,
+                             capture_output=True, text=True, check=False)
+    assert checked.returncode == 0, checked.stdout
+
+
 STAND_INS = ROOT / "tests/python/stand_ins"
 
 

@@ -38,7 +38,8 @@ def test_starts_without_scenes_and_covers():
     program = """
 import sys
 import repel._repel as compiled
-for name in ("Scene", "ScriptedOperator", "SimulatedArm", "load_scene", "Cover", "cover"):
+for name in ("Scene", "ScriptedOperator", "SimulatedArm", "load_scene", "Cover", "cover",
+             "DepthCamera", "LiveView"):
     if hasattr(compiled, name):
         delattr(compiled, name)
 for name in [name for name in sys.modules if name.startswith("repel") and "_repel" not in name]:
@@ -46,5 +47,11 @@ for name in [name for name in sys.modules if name.startswith("repel") and "_repe
 import repel
 assert "cover" not in repel.__all__ and "World" in repel.__all__
 from repel import *
+try:
+    repel.LiveView
+except AttributeError as error:
+    assert "repel.LiveView is not in this build" in str(error)
+else:
+    raise AssertionError
 """
     subprocess.run([sys.executable, "-c", program], check=True)

@@ -145,6 +145,19 @@ def test_the_interpreter_ends_while_threads_are_in(call):
     """)
 
 
+@pytest.mark.skipif(not hasattr(repel._repel, "LiveView"), reason="built without the live view")
+def test_the_interpreter_ends_while_a_view_is_open():
+    survives("""
+        cell = gantry_cell()
+        view = repel.LiveView(cell, port=0)
+        cell.step(np.zeros(3), np.zeros(3), repel.Command())
+        view.publish()
+        del cell  # the view keeps it
+        view.publish()
+        print("the end")
+    """)
+
+
 def test_readings_of_another_length_are_refused():
     cell, z, rest = gantry_cell(), np.zeros(3), repel.Command()
     for wrong in (np.zeros(2), np.zeros(4), np.zeros(0)):

@@ -249,6 +249,121 @@ def test_what_cannot_be_attached_is_named():
     assert "starts inside 'block'" in attached(inside, start_inside="push_out").cell.warnings[0]
 
 
+#: A wall on a mocap body before the tool, and a ball that falls beside the arm.
+MOVING = """<body name="door" mocap="true" pos="0.85 0 0.4"><geom name="door" type="box"
+    size="0.02 0.3 0.3"/></body><body name="ball" pos="-1 0 1"><freejoint/><geom name="falling"
+    size="0.05"/></body>"""
+
+
+def moving(**options):
+    return attached(with_geom(MOVING).replace('qpos="', 'mpos="0.85 0 0.4" qpos="-1 0 1 1 0 0 0 '),
+                    **options)
+
+
+def to_the_door(sim):
+    """[m] from the arm, along x."""
+    kinematics = repel.ArmKinematics(sim.arm)
+    kinematics.update(sim.data.qpos[7:])
+    door = sim.followed[0]
+    return min(repel.separation(part.shape, kinematics.X_WL(part.link) @ part.X_FP, door.shape,
+                                door.X_WP).distance for part in sim.arm.parts)
+
+
+def shifted(sim, by, after=0.001):
+    """A tick with the door moved along x [m], a time [s] after the last."""
+    sim.data.mocap_pos[0, 0] += by
+    sim.data.time += after
+    return sim.tick()
+
+
+def test_geoms_that_move_are_followed_where_they_are():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        sim = moving(follow=True)
+    assert [part.name for part in sim.followed] == ["door", "falling"] and sim.left_out == ["foot"]
+    sim.tick()
+    start = sim.cell.X_WT()[0, 3]
+    for _ in range(600):
+        sim.data.mocap_pos[0, 0] -= 0.0003  # 0.3 m/s towards the arm
+        tick = sim.step()
+        seen = sim.cell.loose
+        for name in ("door", "falling"):
+            part = sim.data.geom(name)
+            # mj_step has moved the ball on by a step of at most its speed.
+            np.testing.assert_allclose(seen[name]["X_WP"][:3, 3], part.xpos, atol=0.01)
+        assert sim.data.ncon == 0 and tick.stop == "running"
+    assert tick.hardest_pair.endswith(" - door") and tick.peak_force > 1.0
+    assert sim.cell.X_WT()[0, 3] < start - 0.02  # it was pushed away
+    assert seen["falling"]["X_WP"][2, 3] == pytest.approx(1 - 0.5 * 9.81 * 0.6 ** 2, abs=0.01)
+
+
+def test_the_velocity_of_a_followed_geom_is_that_of_its_way():
+    """A wall that comes nearer is resisted by its damping. What jumps counts as at rest."""
+    pushes = {}
+    for speed in (0.0, 0.2, 50.0):
+        sim = moving(follow=["door"], leave_out=["falling"])
+        shifted(sim, 0.01 + 0.001 * speed - to_the_door(sim), after=1.0)
+        pushes[speed] = shifted(sim, -0.001 * speed).peak_force
+    assert pushes[0.2] > pushes[0.0] + 1.0 > 2.0
+    assert pushes[50.0] == pytest.approx(pushes[0.0], rel=1e-6)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_a_followed_geom_that_is_nowhere_is_named(value):
+    sim = moving(follow=True)
+    sim.step()
+    sim.data.mocap_pos[0, 1] = value
+    with pytest.raises(repel.SetupError, match="'door' has a pose that is not finite"):
+        sim.step()
+    sim.data.mocap_pos[0, 1] = 0.0
+    assert sim.step().stop == "running"
+
+
+def test_what_is_not_followed_is_warned_of_and_what_does_not_move_is_refused():
+    with pytest.warns(UserWarning, match="move without the arm, and are no obstacles: falling$"):
+        sim = moving(follow=["door"])
+    assert sim.left_out == ["falling", "foot"]
+    for wrong in ("table", "part 7", "nothing"):
+        with pytest.raises(repel.SetupError, match=f"follow: no geom that moves without the arm is "
+                                                   f"called '{wrong}'; allowed: door, falling"):
+            moving(follow=[wrong])
+    with pytest.raises(repel.SetupError, match="allowed: none, the model has no such geom"):
+        attached(follow=["table"])
+    with pytest.raises(repel.SetupError, match="loose"):
+        moving(follow=True, limits=repel.Capacities(loose=1))
+
+
+def test_a_followed_geom_can_be_gripped():
+    """Held, it is where the tool has it, and does not push the arm."""
+    sim = moving(follow=["door"], leave_out=["falling", "table", "post", "rail", "ball",
+                                               "wedge"])
+    sim.cell.attach("door", over=0.01)
+    for _ in range(30):
+        sim.step()
+    held = sim.cell.loose["door"]
+    assert held["holder"] == 0
+    tick = shifted(sim, -to_the_door(sim))
+    np.testing.assert_allclose(sim.cell.loose["door"]["X_WP"], held["X_WP"], atol=5e-3)
+    assert tick.peak_force == 0.0
+    sim.cell.release("door", over=0.01)
+    for _ in range(30):
+        tick = shifted(sim, 0.0)
+    np.testing.assert_allclose(sim.cell.loose["door"]["X_WP"], sim.followed[0].X_WP
+                               @ [[1, 0, 0, -to_the_door(sim)], [0, 1, 0, 0], [0, 0, 1, 0],
+                                  [0, 0, 0, 1]], atol=1e-3)
+    assert tick.peak_force > 1.0
+
+
+def test_a_plane_on_a_mocap_body_is_followed():
+    text = with_geom("<body name='plate' mocap='true' pos='0 0 -0.5'><geom name='plate' "
+                     "type='plane' size='1 1 1'/></body>").replace("<key ", "<key mpos='0 0 -0.5' ")
+    sim = attached(text, follow=True)
+    X_WP = sim.followed[0].X_WP
+    found = repel.separation(repel.Shape.sphere(0.1), ([5, 5, 0], [1, 0, 0, 0]),
+                             sim.followed[0].shape, X_WP)
+    assert found.distance == pytest.approx(0.4, abs=1e-12)
+
+
 def test_nothing_is_warned_of_a_plain_model():
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -115,6 +115,31 @@ def test_a_run_tells_its_ticks_and_stops_when_it_is_told_to(scenes):
     assert 100 < len(count) < 1000 and count[99] == 1.0 and count[-1] == 0.0  # it faded
 
 
+def test_a_callback_is_the_operator_of_a_run():
+    """It drives the tool upwards, sees that, and lets go."""
+    seen, up = [], repel.Command(linear=[0, 0, 0.05])
+
+    def drive(ticks):
+        seen.append(ticks[0])
+        return up if len(seen) < 30 else repel.Command()
+    report = repel.run("empty", seconds=1.0, on_tick=drive, every=10)
+    assert report["exit_status"] == 0 and [tick.tick for tick in seen] == list(range(0, 400, 10))
+    way = seen[29].p_WT - seen[1].p_WT
+    assert way[2] == pytest.approx(0.05 * 280 / 400, rel=0.2) and abs(way[:2]).max() < 5e-3
+    assert abs(seen[-1].v_WT).max() < 1e-3
+    by_script, both = [], []
+    repel.run("two_arms", seconds=0.5, on_tick=by_script.append)
+    repel.run("two_arms", seconds=0.5, on_tick=lambda ticks: both.append(ticks) or [None, up])
+    assert (both[-1][0].p_WT == by_script[-1][0].p_WT).all()
+    assert both[-1][1].p_WT[2] > by_script[-1][1].p_WT[2] + 0.005
+    for wrong in (1.0, "up", [up], [up, 1.0], [up, None, None]):
+        with pytest.raises(TypeError, match="on_tick: expected None, a Command of the first arm, or "
+                                            "a sequence of 2"):
+            repel.run("two_arms", seconds=0.1, on_tick=lambda ticks, wrong=wrong: wrong)
+    with pytest.raises(repel.SetupError, match="every is 0"):
+        repel.run("empty", on_tick=drive, every=0)
+
+
 def test_what_a_callback_raises_ends_the_run(scenes):
     with pytest.raises(ZeroDivisionError):
         repel.run(scenes / "empty.yaml", seconds=1e5, on_tick=lambda ticks: 1 / 0)

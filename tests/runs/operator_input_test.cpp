@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <optional>
 
 #include <repel/runs/operator/operator_input.hpp>
 
@@ -52,6 +53,23 @@ struct Bench {
 bool at_rest(const Command& command) {
   return command.hand.ball.linear.isZero(0.0) && command.hand.ball.angular.isZero(0.0) &&
          command.hand.lever_rate == 0.0;
+}
+
+TEST(OperatorInput, ObeyACommandWhileThereIsOne) {
+  std::optional<Command> told;
+  OperatorInput hands(script());
+  hands.obey(told);
+  OperatorInput plain(script());
+  const Mat3 R_WT = Mat3::Identity();
+  for (int i = 0; i < 100; ++i) {
+    told.reset();
+    EXPECT_EQ(hands.step(R_WT, period).hand.ball.linear, plain.step(R_WT, period).hand.ball.linear);
+    told.emplace().hand.ball.linear = Vec3(0.01 * i, 0, 0);
+    EXPECT_EQ(hands.step(R_WT, period).hand.ball.linear, Vec3(0.01 * i, 0, 0))
+        << "the script waits";
+  }
+  hands.let_go();
+  EXPECT_TRUE(at_rest(hands.step(R_WT, period)));
 }
 
 TEST(OperatorInput, PlayTheirScriptWhileNobodyTakesTheControls) {

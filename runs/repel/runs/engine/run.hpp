@@ -5,9 +5,11 @@
 
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <span>
 
 #include <repel/loop/tap.hpp>
+#include <repel/network/operator.hpp>
 #include <repel/network/remote/link.hpp>
 #include <repel/runs/engine/progress_thread.hpp>
 #include <repel/runs/operator/controls.hpp>
@@ -30,6 +32,7 @@ struct Attachments {
   DatedShapes* shapes = nullptr;  ///< receives those of new parts, if a recording shows them
   /// SessionOptions::on_tick
   std::function<void(const Cell&, std::span<const TickRecord* const>)> on_tick{};
+  std::span<const std::optional<network::Command>> hands{};  ///< SessionOptions::hands
 };
 
 /// Runs a prepared scene, once. `show` is called from a separate thread, a few times a second. When

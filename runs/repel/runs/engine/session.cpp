@@ -104,6 +104,7 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
   require_passive_grip(device, prepared->cell.network(0));
   Attachments attached{nullptr, nullptr, device.link.get(), recording, nullptr, &at_once};
   attached.on_tick = session.on_tick;
+  attached.hands = session.hands;
   if (remote) {
     remote->open(session.link, scene);
     attached.remote = &remote->link;

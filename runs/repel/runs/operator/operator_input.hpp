@@ -45,6 +45,10 @@ class OperatorInput {
   /// From now on replays the command of `record`, which must stay valid and is read at each tick.
   void follow(const TickRecord& record) noexcept { recorded_ = &record; }
 
+  /// From now on the command there, while there is one, counts in place of all others. It is read
+  /// at each tick, and must stay valid.
+  void obey(const std::optional<network::Command>& told) noexcept { told_ = &told; }
+
   /// The script begins at `begin`: until then the hand is at rest.
   void await() noexcept { awaits_ = true; }
   void begin() noexcept { awaits_ = false; }
@@ -57,6 +61,8 @@ class OperatorInput {
       command_ = recorded_->command;
     } else if (has_let_go_) {
       rest(period);
+    } else if (told_ != nullptr && *told_) {
+      command_ = **told_;
     } else {
       const bool listens = hear(period);
       if (device_ != nullptr) feel(period, listens);
@@ -124,6 +130,7 @@ class OperatorInput {
   devices::HandFollower follower_;
 #endif
   const TickRecord* recorded_ = nullptr;
+  const std::optional<network::Command>* told_ = nullptr;
   Driver driver_ = Driver::script;
   network::Command command_;
   bool has_let_go_ = false;

@@ -4,10 +4,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 
 #include <repel/cell/cell.hpp>
+#include <repel/network/operator.hpp>
 #include <repel/runs/options/link_choice.hpp>
 
 namespace repel::runs {
@@ -28,6 +30,9 @@ struct SessionOptions {
   LinkChoice link;                        ///< to the other side of the scene
   /// Called after each tick, outside of its measured time, with the records of all arms; null: not.
   std::function<void(const Cell&, std::span<const TickRecord* const>)> on_tick{};
+  /// For each arm the command of its operator in the next tick, in place of the script; without a
+  /// value: the script goes on. `on_tick` may change them. Empty: every arm has its script.
+  std::span<const std::optional<network::Command>> hands{};
 };
 
 }  // namespace repel::runs
