@@ -141,6 +141,7 @@ export class Stage {
     this.grid.material.color.set(colour("grid"));
     this.ground.material.opacity = Number(colour("shade"));
     this.sky.groundColor = new Color(colour("ground"));
+    this.surround(this.scene.background !== null);
     this.invalidate();
   }
 
