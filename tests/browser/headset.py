@@ -8,6 +8,7 @@ import os
 
 import live
 from cases import InBrowser, OwnProgram, SharedProgram, by_the_clock
+from fingers import PHONE, SMALLEST
 
 VENDOR = os.path.join(live.ROOT, "tests", "browser", "vendor")
 with open(os.path.join(VENDOR, "iwer.min.js"), encoding="utf-8") as runtime:
@@ -493,10 +494,10 @@ class HeadsetSwitches(WithHeadset, OwnProgram):
                     abs(s["hand"]["second_grip_n"][2]) > 0.5, "the left hand draws the tool up", 1)
         self.squeeze("right")
         self.assertEqual(page.state()["xr"]["held"], [True, True])
-        self.press("right", "\u2212")
-        page.until(lambda s: s["hand"]["scale"] < 1, "the scale of both is finer")
         self.let_go("left", 1)
         self.assertEqual(page.state()["xr"]["held"], [True, False])
+        self.press("left", "\u2212")
+        page.until(lambda s: s["hand"]["scale"] < 1, "the scale of both is finer")
 
     @by_the_clock
     def test_a_phone_is_a_master_with_one_hand(self):
@@ -505,7 +506,10 @@ class HeadsetSwitches(WithHeadset, OwnProgram):
             Object.defineProperty(inputSource, "targetRayMode", {value: "screen"});
             Object.defineProperty(inputSource.gamepad, "hapticActuators", {value: []});
             navigator.vibrate = (ms) => felt.push(ms);""")
+        self.resize(*PHONE)
         page = self.open(self.start())
+        page.until(lambda s: page.shown("enter-ar"), "it is offered")
+        self.assertEqual(self.do(SMALLEST), [])
         page.begin()
         self.enter("ar")
         before = page.state()["toolPosition"]

@@ -19,10 +19,9 @@ const DRAW_MS = 100;
 const RIBBON = 0.09;  // [m] high
 const PLACE = { ahead: 0.55, aside: -0.42, below: 0.2 };  // [m], from the eyes
 
-// Between a hand and the tool: that of the network where its master is one that the hand moves, and
-// otherwise that of the page.
-export const scaleInput = () =>
-  at(state.scene?.arms[0]?.modules.includes("six_axes") ? "hand-scale" : "xr-scale");
+// Between a hand and the tool: the scale of the network where the hand moves a master with six axes,
+// and otherwise that of the page.
+export const scaleInput = () => at(state.frame?.arms[0]?.grip_n ? "hand-scale" : "xr-scale");
 
 const toggles = (name) => [...document.querySelectorAll(`#${name} input`)].map((box) => ({
   text: box.parentElement.textContent.trim(), on: box.checked, press: () => box.click(),
