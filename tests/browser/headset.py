@@ -93,8 +93,17 @@ class WithHeadset(InBrowser):
 
     def squeeze(self, hand="right", k=0):
         """Closes the clutch, and takes the controls by it."""
+        def holds(state):
+            if "stopped" in state["xr"]["why"][k]:  # the machine stood still: again
+                self.button(hand, "squeeze", 0)
+                self.frames()
+                self.button(hand, "squeeze", 1)
+            return state["xr"]["held"][k] and state["operator"]["you"]
+
+        self.button(hand, "squeeze", 0)
+        self.frames()
         self.button(hand, "squeeze", 1)
-        self.page.until(lambda s: s["xr"]["held"][k] and s["operator"]["you"], "it is held")
+        self.page.until(holds, "it is held")
 
     def let_go(self, hand="right", k=0):
         self.button(hand, "squeeze", 0)
@@ -251,12 +260,11 @@ class Headset(WithHeadset, SharedProgram):
     def let_go_by(self, cause, sudden=False):
         """How the hand is let go, and that from the next frame on, or at once, nothing moves."""
         page = self.page
-        self.button("right", "squeeze", 0)
-        page.until(lambda s: not s["xr"]["held"][0], "it is let go")
+        self.let_go()
         self.squeeze()
         self.lead("right", UP)
-        live.until(lambda: (self.do("return calls.filter((each) => each !== 'frame').at(-1)") or 0)
-                   > 0.01, "it moves")
+        moves = "return (calls.filter((each) => each !== 'frame').at(-1) ?? 0) > 0.01"
+        self.drives(lambda s: self.do(moves), "it moves")
         self.do(f"calls.length = 0; {cause}")
         why = page.until(lambda s: not s["xr"]["held"][0], "it is let go")["xr"]["why"][0]
         # What a timer says before the frame that finds out still moves.
