@@ -15,7 +15,8 @@ with open(os.path.join(VENDOR, "iwer.min.js"), encoding="utf-8") as runtime:
     RUNTIME = runtime.read()
 
 # A Quest 3. The runtime calls every position emulated; here `lost` says of which hand it is
-# "guessed" or "gone". `calls` has what the page says and where a frame begins, `felt` what the hands feel.
+# "guessed" or "gone". `calls` has what the page says and where a frame begins, `felt` what the hands
+# feel.
 EMULATED = RUNTIME + """;
     window.emulated = new IWER.XRDevice(IWER.metaQuest3);
     emulated.installRuntime({forceInstall: true});
