@@ -12,7 +12,7 @@ from selenium.webdriver.common.by import By
 # Where the processor draws, that takes nearly all of the time. A page does all that it does, ten
 # times a second, but the scene stays white, unless a test counts its pixels.
 SELDOM = """
-    window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 100);
+    window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), %d);
     window.cancelAnimationFrame = clearTimeout;"""
 WHITE = """
     for (const each of ["clear", "drawArrays", "drawArraysInstanced", "drawElements",
@@ -103,6 +103,8 @@ def by_the_clock(test):
 
 
 class InBrowser(unittest.TestCase):
+    TURN_MS = 100  # between two turns at which a page draws
+
     def setUp(self):
         self.browser = browser = the_browser.get()
         old = browser.window_handles
@@ -119,7 +121,7 @@ class InBrowser(unittest.TestCase):
 
     def save_time(self):
         """In the pages of this tab that are opened from now on."""
-        self.before_pages(SELDOM)
+        self.before_pages(SELDOM % self.TURN_MS)
         self.white = self.before_pages(WHITE)
 
     def draw_pixels(self):

@@ -32,7 +32,8 @@ DISTURBED = """
     const done = arguments[0];
     import("./state.js").then(({state}) => done(
       (state.timing?.late_us.max ?? 0) > 45000 ||
-      window.said.banners.some((text) => /silent|let go/.test(text))));"""
+      window.said.banners.some((text) => /silent|let go/.test(text)) ||
+      window.said.toasts.some((text) => /poses stopped/.test(text))));"""
 
 
 def scene(name):

@@ -71,12 +71,27 @@ export class Boxes {
     this.#ray.setFromCamera(this.#pointer, this.stage.camera);
   }
 
-  // The nearest solid that is seen where the pointer is.
-  #seen() {
+  // The box that is nearest along a ray, and where it is; null: something else is, or nothing.
+  along(ray) {
+    const seen = this.#seen(ray);
+    const part = this.spare.find((k) => seen && this.parts.parts[k]?.solid === seen.object);
+    return part === undefined ? null : { part, position: this.#body(part).position.clone() };
+  }
+
+  // Leads a box, now and then, and to where it comes to stand: that must not be left out.
+  lead(part, position, last = false) {
+    this.#last = part;
+    if (!last && performance.now() - this.#sentAt < PERIOD_MS) return;
+    this.#sentAt = performance.now();
+    this.connection.send({ type: "move_part", part, position: position.toArray() });
+  }
+
+  // The nearest solid along a ray.
+  #seen(ray = this.#ray) {
     const solids = this.parts.parts
       .filter(({ body }) => this.parts.bodies[body]?.visible)
       .map(({ solid }) => solid);
-    return this.#ray.intersectObjects(solids, false)[0];
+    return ray.intersectObjects(solids, false)[0];
   }
 
   #down(event) {
@@ -106,17 +121,11 @@ export class Boxes {
     this.#hit.add(this.#offset);
     if (this.#level) this.#target.setX(this.#hit.x).setY(this.#hit.y);
     else this.#target.setZ(this.#hit.z);
-    if (performance.now() - this.#sentAt > PERIOD_MS) this.#send();
-  }
-
-  #send() {
-    this.#sentAt = performance.now();
-    const position = this.#target.toArray();
-    this.connection.send({ type: "move_part", part: this.#grabbed, position });
+    this.lead(this.#grabbed, this.#target);
   }
 
   #up(event) {
-    if (this.#grabbed !== null) this.#send();
+    if (this.#grabbed !== null) this.lead(this.#grabbed, this.#target, true);
     if (this.#bringing && event.target === at("add-box")) this.#bring(this.#besideTool());
     if (this.#bringing && event.target === this.stage.canvas) {
       this.#aim(event);

@@ -8,13 +8,17 @@ import { state } from "./state.js";
 import { at, finite, scriptInWords, write } from "./words.js";
 
 const PERIOD_MS = 20;
+const HANDS = ["first", "second"];
 
 export class Controls {
   #leading = false;  // the lever was used last, rather than the rates
+  #beatAt = -Infinity;
+  #both = false;  // the hand that the keys do not move was moved last
   #askedAt = -Infinity;
 
-  // `devices` answer poll(now) with rates between -1 and 1, ahead, left and up, or with `world`
-  // rates in metres a second; with null when they are not there.
+  // `devices` answer poll(now, limits) with rates between -1 and 1, ahead, left and up, or with
+  // rates in the world in metres and radians a second, `world` and `round`; with null when they are
+  // not there. One that has a `hand` moves that hand, the others the one that is chosen.
   constructor(connection, devices, lever, hand, heading) {
     Object.assign(this, { connection, devices, lever, hand, heading });
     const percent = (id) => (x) => write(at(id), `${Math.round(100 * x)} %`);
@@ -101,27 +105,48 @@ export class Controls {
   #visible() {
     if (document.hidden) {
       this.wasDriving = this.ours;
+      this.beat();  // what was held was let go
     } else if (this.wasDriving) {
       toast("While this page was hidden nobody drove: the forces had ramped to zero");
     }
   }
 
   #tick() {
-    if (!this.ours || document.hidden) return;
-    const { linear, angular, clutch } = this.#rates();
+    if (!document.hidden && performance.now() - this.#beatAt > PERIOD_MS / 2) this.beat();
+  }
+
+  // Says what the devices ask for at once, and whether it did. It need not wait for the next turn
+  // of a device that knows when it has something to say.
+  beat() {
+    if (!this.ours) return false;
+    this.#beatAt = performance.now();
+    const chosen = HANDS[Number(this.hand.second)];
+    const [own, other] = [[], []];
+    for (const device of this.devices) {
+      ((device.hand ?? chosen) === chosen ? own : other).push(device);
+    }
+    const { linear, angular, clutch } = this.#rates(own);
     const rate = this.hand.second ? 0 : this.lever.rate();
     const moving = [...linear, ...angular].some((x) => x !== 0);
     if (rate !== 0 || moving) this.#leading = rate !== 0;
-    if (this.#leading && !this.hand.second) {
-      this.connection.send({ type: "servo_lever", direction: this.lever.direction(), rate });
-    } else {
-      this.connection.send({ type: "servo_cv", linear, angular, frame: "world", clutch,
-                             ...this.hand.named });
-    }
+    const sent = this.#leading && !this.hand.second
+      ? this.connection.send({ type: "servo_lever", direction: this.lever.direction(), rate })
+      : this.connection.send({ type: "servo_cv", linear, angular, frame: "world", clutch,
+                               ...this.hand.named });
+    this.#moveOther(other, HANDS[1 - HANDS.indexOf(chosen)]);
+    return sent;
   }
 
-  // What all devices together ask for, within what the arm may.
-  #rates() {
+  // The last time with a rate of zero.
+  #moveOther(devices, hand) {
+    const rates = this.#rates(devices);
+    if (!rates.clutch && !this.#both) return;
+    this.#both = rates.clutch;
+    this.connection.send({ type: "servo_cv", ...rates, frame: "world", hand });
+  }
+
+  // What these devices together ask for, within what the arm may.
+  #rates(devices) {
     const { ahead, left, up } = this.heading();
     const axes = [ahead, left, up].map((axis) => axis.toArray());
     const world = (v) => [0, 1, 2].map((k) => v.reduce((sum, x, i) => sum + x * axes[i][k], 0));
@@ -131,15 +156,15 @@ export class Controls {
     const linear = [0, 0, 0];
     const angular = [0, 0, 0];
     let clutch = false;
-    for (const device of this.devices) {
-      const rates = device.poll(performance.now());
+    for (const device of devices) {
+      const rates = device.poll(performance.now(), { fastest, turning });
       if (!rates?.clutch) continue;
       clutch = true;
       const along = rates.world ?? world(rates.linear).map((x) => x * fastest);
-      const round = world(rates.angular);
+      const round = rates.round ?? world(rates.angular).map((x) => x * turning);
       for (let k = 0; k < 3; ++k) {
         linear[k] += along[k];
-        angular[k] += round[k] * turning;
+        angular[k] += round[k];
       }
     }
     return { linear: within(linear, fastest), angular: within(angular, turning), clutch };

@@ -114,7 +114,7 @@ export class Drag {
   draw() {
     const { tool, ghost, handle, band, stage } = this;
     band.clear();
-    const shown = this.mayDrive() && tool !== null;
+    const shown = this.mayDrive() && tool !== null && !stage.immersive;
     handle.visible = shown;
     if (ghost) ghost.visible = shown && this.#grabbed;
     if (shown) {

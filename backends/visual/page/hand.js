@@ -138,8 +138,8 @@ export class Hand {
 
 const titleOf = ({ shape }) => ({ title: `a ${shape} that attracts the tool` });
 const chosen = (boxes) => boxes.filter((box) => box.checked).map((box) => box.value);
-const factorOf = (power) => Number((10 ** power).toPrecision(3));
-const factorText = (factor) => (finite(factor) ? `\u00d7 ${Number(factor.toPrecision(3))}` : "");
+export const factorOf = (power) => Number((10 ** power).toPrecision(3));
+export const factorText = (factor) => (finite(factor) ? `\u00d7 ${Number(factor.toPrecision(3))}` : "");
 
 // A box to check for each [value, text, title], in the element of that name.
 function boxes(id, entries = [], changed) {

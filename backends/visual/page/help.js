@@ -36,6 +36,11 @@ const GROUPS = [
     ["one finger", "orbit; on the ring: lead the tool"],
     ["two fingers", "closer, farther, shift"],
   ]],
+  ["Headset", [
+    ["squeeze", "hold the tool: it follows the hand"],
+    ["trigger", "press a key of the panel, drag a box"],
+    ["both triggers", "draw the scene larger, smaller, round"],
+  ]],
   ["Camera and page", [
     ["1 2 3 4", "home, front, side, top"],
     ["5", "follow the tool"],
@@ -64,7 +69,7 @@ export function startHelp() {
     const list = element("dl", "", group);
     for (const [key, meaning] of keys) {
       const term = element("dt", "", list);
-      const one = /drag|wheel|stick|finger/.test(key) ? [key] : key.split(" ");
+      const one = /drag|wheel|stick|finger|trigger/.test(key) ? [key] : key.split(" ");
       for (const cap of one) element("kbd", cap, term);
       element("dd", meaning, list);
     }

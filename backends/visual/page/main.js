@@ -36,6 +36,7 @@ import { Transport } from "./transport.js";
 import { Triad } from "./triad.js";
 import { Visuals } from "./visuals.js";
 import { at, norm, write } from "./words.js";
+import { Headset } from "./xr.js";
 
 const CLEAR_MS = 120;  // between two looks at what hides the tool
 const REST_MS = 5000;  // from when the page is hidden to when it lets its line go
@@ -82,9 +83,11 @@ const boxes = new Boxes(connection, stage, parts);
 const drag = new Drag(stage, parts,
                       { mayDrive: () => controls.ours, take: () => controls.take() });
 const sticks = new Sticks(() => controls.take());
-const controls = new Controls(connection, [keyboard, gamepad, new SpaceMouse(), drag, sticks],
-                              lever, hand, heading);
-startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras, strips, visuals });
+const headset = new Headset(stage, { boxes, heading, paint, changed: showOrHide });
+const controls = new Controls(connection, [keyboard, gamepad, new SpaceMouse(), drag, sticks,
+                                           ...headset.clutches], lever, hand, heading);
+headset.drives(controls);
+startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras, strips, visuals, headset });
 
 const toolAt = new Vector3();
 const near = new Set();
@@ -210,26 +213,34 @@ function clearView(now) {
   for (const { a } of state.frame.pairs.slice(0, 2)) {
     if (a) points.push(new Vector3().fromArray(a));
   }
-  const eye = stage.camera.position;
+  const { eye } = stage;
   visuals.clear(parts.clear(eye, points), eye, points);
 }
 
+// A headset has turns of its own.
 function draw(now) {
-  turn = document.hidden ? 0 : requestAnimationFrame(draw);
+  turn = document.hidden || headset.mode ? 0 : requestAnimationFrame(draw);
+  if (headset.mode) return;
+  cameras.update();
+  stage.quality.frame(now, paint(now));
+}
+
+// Draws what is due, and says whether that was the scene.
+function paint(now) {
   if (fresh && state.frame) move(state.frame);
   fresh = false;
-  cameras.update();
   if (stage.pending && state.frame) {
     clearView(now);
     labels.clear();
     marks.update(state.frame);
+    if (stage.immersive) labels.clear();  // there they would lie on nothing
     gaps.update(marks.unit);
     fixtures.update(state.frame);
     labels.show(now);
     drag.draw();
     triad.draw();
   }
-  stage.quality.frame(now, stage.render());
+  const drawn = stage.render();
   if (now - panelsAt > PANELS_MS) {
     panelsAt = now;
     if (panelsDue && state.frame) {
@@ -240,6 +251,7 @@ function draw(now) {
     for (const strip of strips) strip.draw();
     histogram.draw();
   }
+  return drawn;
 }
 
 // A hidden page draws nothing, and when it stays hidden it gets nothing either, unless it drives:
@@ -251,7 +263,7 @@ function showOrHide() {
     return;
   }
   if (connection.resting) connection.open();
-  if (turn === 0) turn = requestAnimationFrame(draw);
+  if (turn === 0 && !headset.mode) turn = requestAnimationFrame(draw);
 }
 
 function onKey(event) {

@@ -51,8 +51,8 @@ export class Marks {
     }
     this.counts = { threads: 0, forceArrows: 0, staleThreads: 0 };
     // As thick on the screen from wherever it is looked at.
-    this.unit = 0.00085 * this.stage.camera.position.distanceTo(this.stage.target);
-    this.scale = forceScale();
+    this.unit = 0.00085 * this.stage.eye.distanceTo(this.stage.target);
+    this.scale = forceScale() * this.stage.rig.scale.x;  // in a headset as long in the room
     for (const pair of frame.pairs.slice(0, MOST_PAIRS)) this.#pair(pair);
     this.#name(frame.pairs);
     if (settings.forces) this.#arms(frame);

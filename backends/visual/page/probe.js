@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the page shows, for tests, for pictures of it and for the console: window.repel.state(),
-// distanceSpan(), firstPicture(), pixels(), tinted(), extent(), look(), adapt(), send().
+// distanceSpan(), firstPicture(), pixels(), tinted(), extent(), look(), adapt(), send(),
+// keyInRoom(), toRoom(), pose().
 
+import { Vector3 } from "./vendor/three.min.js";
 import { settings } from "./settings.js";
-import { state } from "./state.js";
+import { state, toolPose } from "./state.js";
 import { theme } from "./theme.js";
 
 export function startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras, strips,
-                             visuals }) {
+                             visuals, headset }) {
   window.repel = {
     state() {
       const { frame, scene, operator } = state;
@@ -35,6 +37,8 @@ export function startProbe({ connection, stage, parts, marks, gaps, fixtures, ca
         hand: frame?.arms?.[0] ? { ...frame.arms[0], energy_j: undefined } : null,
         camera: { mode: cameras.mode, following: cameras.following,
                   position: stage.camera.position.toArray() },
+        xr: headset.told,
+        xr_latency_ms: headset.latency,  // from the frame of a pose to the command: p50, p99, max
         theme: theme(),
         quality: stage.quality.level,
         aspect: stage.camera.aspect,
@@ -53,6 +57,10 @@ export function startProbe({ connection, stage, parts, marks, gaps, fixtures, ca
     // Whether the scene may be drawn coarser on a slow machine.
     adapt: (yes) => stage.quality.adapt(yes),
     send: (message) => connection.send(message),
+    // Of a headset: where the key with that text is, and a point of the scene, in the room.
+    keyInRoom: (text) => headset.panel.whereIs(text),
+    toRoom: (point) => stage.rig.worldToLocal(new Vector3().fromArray(point)).toArray(),
+    pose: () => toolPose(state.frame),
     // From elsewhere than the fixed views: where the camera is, and what it looks at.
     look(position, target) {
       cameras.look(position, target);

@@ -2,9 +2,9 @@
 // The stage: renderer, light, and the floor with its grid. z is up.
 
 import {
-  BufferAttribute, BufferGeometry, Color, DirectionalLight, HemisphereLight, LineBasicMaterial,
-  LineSegments, Mesh, PCFShadowMap, PerspectiveCamera, PlaneGeometry, Scene, ShadowMaterial,
-  WebGLRenderer,
+  BufferAttribute, BufferGeometry, Color, DirectionalLight, Group, HemisphereLight,
+  LineBasicMaterial, LineSegments, Mesh, PCFShadowMap, PerspectiveCamera, PlaneGeometry, Scene,
+  ShadowMaterial, Sphere, Vector3, WebGLRenderer,
 } from "./vendor/three.min.js";
 import { LEVELS, Quality } from "./quality.js";
 import { colour, onTheme } from "./theme.js";
@@ -22,7 +22,10 @@ export class Stage {
   first = null;  // when the first picture was drawn, from the navigation on [ms]
   covered = () => 0;  // pixels of its height that lie below buttons
   onResize = () => {};  // hears of the width over the height that the picture had
+  sphere = null;  // that holds the scene, and its lowest point [m]
+  lowest = 0;
   #dirty = true;
+  #eye = new Vector3();
 
   constructor(canvas) {
     this.canvas = canvas;
@@ -31,10 +34,14 @@ export class Stage {
     // Smooth edges are four times the pixels.
     this.renderer = new WebGLRenderer({ canvas, antialias: !software, alpha: true });
     this.renderer.shadowMap.type = PCFShadowMap;
+    this.renderer.xr.enabled = true;
     this.scene = new Scene();
+    this.rig = new Group();  // the room of a headset; at rest in the scene without one
+    this.scene.add(this.rig);
     this.quality = new Quality(() => this.#refine(), software);
     this.camera = new PerspectiveCamera(35, 1, 0.01, 50);
     this.camera.up.set(0, 0, 1);
+    this.rig.add(this.camera);
     this.#light();
     this.#floor();
     onTheme(() => this.#paint());
@@ -50,9 +57,30 @@ export class Stage {
     return this.#dirty;
   }
 
-  // Draws if something changed, and says whether it did.
+  // Somebody is in it, with a headset.
+  get immersive() {
+    return this.renderer.xr.isPresenting;
+  }
+
+  // From where it is looked at.
+  get eye() {
+    return this.camera.getWorldPosition(this.#eye);
+  }
+
+  // Whether there is something behind the scene: the page or the room of who looks, or else this.
+  surround(on) {
+    this.scene.background = on ? new Color(colour("sky")) : null;
+  }
+
+  // The picture has the page again.
+  restore() {
+    this.#resize();
+    this.#refine();
+  }
+
+  // Draws if something changed, and says whether it did. A headset wants every picture.
   render() {
-    if (!this.#dirty) return false;
+    if (!this.#dirty && !this.immersive) return false;
     this.#dirty = false;
     this.renderer.render(this.scene, this.camera);
     this.rendered += 1;
@@ -68,6 +96,8 @@ export class Stage {
   // Lays the floor and its grid under what there is: a sphere that holds it, and its lowest point.
   fit(center, radius, lowest) {
     const around = Math.max(radius, 0.05);
+    this.sphere = new Sphere(center.clone(), around);
+    this.lowest = lowest;
     this.spacing = 10 ** Math.floor(Math.log10(around / 2.5));
     this.ground.position.set(center.x, center.y, lowest - 0.002);
     this.ground.scale.setScalar(8 * around);
@@ -111,6 +141,7 @@ export class Stage {
     this.grid.material.color.set(colour("grid"));
     this.ground.material.opacity = Number(colour("shade"));
     this.sky.groundColor = new Color(colour("ground"));
+    this.surround(this.scene.background !== null);
     this.invalidate();
   }
 
@@ -124,7 +155,7 @@ export class Stage {
   // As finely as the quality says, at any density of the screen.
   #refine(level = LEVELS[this.quality.level]) {
     const { shadowMap } = this.renderer;
-    this.renderer.setPixelRatio(this.#ratio(level));
+    if (!this.immersive) this.renderer.setPixelRatio(this.#ratio(level));
     const cast = this.shadows && level.shadow;
     shadowMap.enabled = cast;
     this.sun.castShadow = cast;
@@ -134,7 +165,7 @@ export class Stage {
 
   #resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
-    if (width === 0 || height === 0) return;
+    if (width === 0 || height === 0 || this.immersive) return;
     this.renderer.setPixelRatio(this.#ratio(LEVELS[this.quality.level]));
     this.renderer.setSize(width, height, false);
     const before = this.camera.aspect;

@@ -21,6 +21,7 @@ const DEFAULTS = {
   driveSpeed: 0.6,  // of the largest that the arm allows
   deadBand: 0.08,  // of a device's range
   deviceScale: 1,
+  xrScale: 0,  // power of ten: motion of the tool per motion of a hand in a headset
   clutchMode: "always",
   rumble: true,
 };
