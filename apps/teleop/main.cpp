@@ -165,8 +165,12 @@ std::unique_ptr<runs::StationProgram> station_beside(const Work& work,
                      work.scene.file);
   }
   session.link.is_impaired = true;
-  if (session.link.domain == 0) session.link.domain = 1 + std::random_device()() % 100;
-  if (session.link.where.empty()) session.link.where = runs::default_link();
+  std::random_device random;
+  if (session.link.domain == 0) session.link.domain = 1 + random() % 100;
+  // So that several pairs of programs have one each.
+  if (session.link.where.empty()) {
+    session.link.where = "udp:127.0.0.1:" + std::to_string(20000 + random() % 12000);
+  }
   std::vector<std::string> words{"station",
                                  work.scene.file,
                                  "--impaired",
@@ -174,6 +178,8 @@ std::unique_ptr<runs::StationProgram> station_beside(const Work& work,
                                  "--domain=" + std::to_string(session.link.domain),
                                  "--rate=" + std::to_string(work.options.rate_hz),
                                  "--seconds=1e6"};
+  if (!session.link.key_file.empty()) words.push_back("--key=" + session.link.key_file);
+  if (session.link.no_key) words.emplace_back("--no-key");
   if (!session.device.empty()) {
     words.push_back("--device=" + session.device);
     session.device.clear();
@@ -250,7 +256,17 @@ int print_schema() {
   return host::has_printed() ? 0 : 4;
 }
 
+int make_key(const std::string& file) {
+  runs::make_link_key(file);
+  std::printf(
+      "%s: a new key. Bring it to the other machine, as by scp, and keep it from others; then: "
+      "--key FILE on both sides\n",
+      file.c_str());
+  return host::has_printed() ? 0 : 4;
+}
+
 int execute(const Arguments& arguments) {
+  if (arguments.command == Command::key) return make_key(arguments.key_file);
   if (arguments.command == Command::list) return list();
   if (arguments.schema) return print_schema();
   const Work work = work_of(arguments);
