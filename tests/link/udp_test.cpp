@@ -121,7 +121,7 @@ TEST(Udp, SaysWhoElseCanReachTheSite) {
   const std::string open = open_site(options)->exposure();
   EXPECT_NE(open.find("0.0.0.0:" + std::to_string(options.port)), std::string::npos) << open;
   EXPECT_NE(open.find("any network of this machine can drive the robot"), std::string::npos);
-  EXPECT_NE(open.find("--link udp:"), std::string::npos) << open;
+  EXPECT_NE(open.find("--key FILE"), std::string::npos) << open;
   for (const char* const any : {"::", "::ffff:0.0.0.0"}) {
     options.address = any;
     try {
