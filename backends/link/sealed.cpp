@@ -9,7 +9,6 @@
 #include <chrono>
 #include <cstdint>
 #include <cstring>
-#include <optional>
 #include <utility>
 
 #include <repel/base/setup_error.hpp>
@@ -202,8 +201,9 @@ class SealedTransport final : public link::Transport {
   void ask() noexcept {
     const auto now = steady_clock::now();
     if (now < ask_at_ || (current_ != nullptr && !current_->is_silent(now))) return;
-    if (!asked_) asked_ = drawn();
-    (void)send_tagged(Kind::hello, {*asked_, {}}, {});
+    if (!asks_) asked_ = drawn();
+    asks_ = true;
+    (void)send_tagged(Kind::hello, {asked_, {}}, {});
     ask_at_ = now + hello_period;
   }
   /// Nothing is kept: what comes in the session proves the key.
@@ -212,21 +212,17 @@ class SealedTransport final : public link::Transport {
     (void)send_tagged(Kind::answer, {numbers_of(in).station, own_}, from);
     return true;
   }
-  /// Begins the session that this names. True as well for a copy of such an answer.
+  /// Begins the session that this names. True as well for one that comes late or once more.
   bool takes_answer(const Bytes& in, const Origin& from) noexcept {
     if (!has_tag(in)) return false;
     const Numbers numbers = numbers_of(in);
-    if (find(numbers) != nullptr) return true;
-    if (numbers.station != asked_) {
-      return std::any_of(sessions_.begin(), sessions_.end(), [&](const Session& session) {
-        return session.numbers.station == numbers.station;
-      });
-    }
+    if (numbers.station != asked_) return false;
+    if (!asks_) return true;
     Session* const session = free_place();
     if (session == nullptr) return true;
     start(*session, numbers, keys_of(numbers), from);
     current_ = session;
-    asked_.reset();
+    asks_ = false;
     ask_at_ = session->heard + answer_patience;
     return true;
   }
@@ -262,7 +258,7 @@ class SealedTransport final : public link::Transport {
       session->origin = from;
       session->speaker = packet.session;
     }
-    if (session == current_) asked_.reset();
+    if (session == current_) asks_ = false;
     return true;
   }
 
@@ -312,7 +308,8 @@ class SealedTransport final : public link::Transport {
   std::uint64_t sent_ = 0;  // in all sessions, so that no count is used again
   std::int64_t refused_ = 0;
   Number own_;                        // of a site, until a session begins with it
-  std::optional<Number> asked_;       // of a station, until it is answered
+  Number asked_{};                    // of a station, with its last hello
+  bool asks_ = false;                 // and is not answered yet
   const Session* current_ = nullptr;  // of a station: in which it sends
   steady_clock::time_point ask_at_{};
 };

@@ -201,6 +201,10 @@ class Udp final : public Transport {
 
 }  // namespace
 
+bool is_on_this_machine(const UdpOptions& options) {
+  return reach_of(resolved(options)) == Reach::this_machine;
+}
+
 std::unique_ptr<Transport> open_udp(const UdpOptions& options) {
   return std::make_unique<Udp>(options);
 }

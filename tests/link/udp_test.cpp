@@ -135,6 +135,15 @@ TEST(Udp, SaysWhoElseCanReachTheSite) {
   EXPECT_EQ(open_udp(station_of(options))->exposure(), "");
 }
 
+TEST(Udp, KnowsTheAddressesOfThisMachineAlone) {
+  for (const char* const here : {"127.0.0.1", "127.3.2.1", "::1", "::ffff:127.0.0.1"}) {
+    EXPECT_TRUE(is_on_this_machine({.address = here})) << here;
+  }
+  for (const char* const elsewhere : {"0.0.0.0", "10.0.0.7", "::", "fe80::1", "::ffff:10.0.0.7"}) {
+    EXPECT_FALSE(is_on_this_machine({.address = elsewhere})) << elsewhere;
+  }
+}
+
 TEST(Udp, CountsWhatIsNoPacket) {
   UdpOptions options;
   const auto site = open_site(options);

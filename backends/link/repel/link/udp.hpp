@@ -24,6 +24,10 @@ struct UdpOptions {
   std::uint64_t agreement = 0;
 };
 
+/// Whether only programs on this machine reach a site of that address.
+/// @throws SetupError for an invalid address
+[[nodiscard]] bool is_on_this_machine(const UdpOptions& options);
+
 /// The site answers at the source address of the session named as heard in its packets. So
 /// RemoteLink alone decides on the partner, and coming first holds no place. A session stays with
 /// its address until it has been silent for 0.1 s. IPv4 and IPv6.

@@ -21,7 +21,6 @@
 #ifdef REPEL_RUNS_SEALED
 #include <repel/sealed/sealed.hpp>
 #endif
-#include <repel/runs/options/listening.hpp>
 
 namespace repel::runs {
 namespace {
@@ -97,8 +96,7 @@ std::string key_file_of(const LinkChoice& choice) {
 void require_out_of_reach(const std::string& where) {
   std::string whom = "other machines reach it";
   if (const auto place = behind(where, "udp")) {
-    const link::UdpOptions options = *udp_place(*place);
-    if (is_loopback({options.address, options.port})) return;
+    if (link::is_on_this_machine(*udp_place(*place))) return;
   } else {
     whom = "DDS listens on every network interface of this machine";
   }
