@@ -6,8 +6,8 @@ include(RepelDependencies)
 # The engines that move simulated arms; each has a class Arm in backends/ENGINE.
 set(REPEL_ENGINES bullet ode mujoco)
 # What find_package offers: the target repel::PART of each. A back end is a folder of this name in
-# backends/; that of dds is link, that of octrees is percepts.
-set(REPEL_COMPONENTS core control common simulated ideal devices link dds record robots cover
+# backends/; that of dds and of sealed is link, that of octrees is percepts.
+set(REPEL_COMPONENTS core control common simulated ideal devices link dds sealed record robots cover
     percepts octrees ${REPEL_ENGINES} scene visual)
 
 # repel_debian_packages(PART OUT): the packages debian-packages.txt lists for PART, as one string.
@@ -87,6 +87,7 @@ repel_all_found(ZSTD REPEL_WITH_ZSTD REPEL_HAS_RECORD ZSTD_FOUND)
 # The driver of Haply is part of the devices, with the packages of the live view.
 repel_all_found(HAPLY REPEL_WITH_HAPLY REPEL_HAS_DEVICES REPEL_HAS_VISUAL)
 repel_all_found(DDS REPEL_HAS_DDS REPEL_HAS_LINK)
+repel_all_found(SEALED REPEL_HAS_SEALED REPEL_HAS_LINK)
 repel_all_found(OCTREES REPEL_HAS_OCTREES REPEL_HAS_COVER REPEL_HAS_PERCEPTS)
 foreach(part ${REPEL_COMPONENTS} meshes hacd sdf mjcf pngs zstd haply)
   repel_say_if_left_out(${part})

@@ -36,6 +36,11 @@ macro(repel_find_dds)
   repel_all_found(DDS CycloneDDS_FOUND REPEL_IDLC)
 endmacro()
 
+macro(repel_find_sealed)
+  repel_pkg_config(SODIUM libsodium)
+  repel_all_found(SEALED SODIUM_FOUND)
+endmacro()
+
 macro(repel_find_robots)
   repel_pkg_config(TINYXML2 tinyxml2)
   find_package(orocos_kdl QUIET)

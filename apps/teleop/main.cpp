@@ -174,6 +174,8 @@ std::unique_ptr<runs::StationProgram> station_beside(const Work& work,
                                  "--domain=" + std::to_string(session.link.domain),
                                  "--rate=" + std::to_string(work.options.rate_hz),
                                  "--seconds=1e6"};
+  if (!session.link.key_file.empty()) words.push_back("--key=" + session.link.key_file);
+  if (session.link.no_key) words.emplace_back("--no-key");
   if (!session.device.empty()) {
     words.push_back("--device=" + session.device);
     session.device.clear();
@@ -250,7 +252,17 @@ int print_schema() {
   return host::has_printed() ? 0 : 4;
 }
 
+int make_key(const std::string& file) {
+  runs::make_link_key(file);
+  std::printf(
+      "%s: a new key. Bring it to the other machine, as by scp, and keep it from others; then: "
+      "--key FILE on both sides\n",
+      file.c_str());
+  return host::has_printed() ? 0 : 4;
+}
+
 int execute(const Arguments& arguments) {
+  if (arguments.command == Command::key) return make_key(arguments.key_file);
   if (arguments.command == Command::list) return list();
   if (arguments.schema) return print_schema();
   const Work work = work_of(arguments);

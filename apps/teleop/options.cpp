@@ -27,6 +27,7 @@ constexpr CommandEntry commands[] = {
     {Command::replay, "replay", "Go through a recording again, and compare the forces"},
     {Command::site, "site", "Run the robot's side of a scene, until it is stopped"},
     {Command::station, "station", "Run the operator's side of a scene, up to its line"},
+    {Command::key, "key", "Make a key for the link between both sides of a scene"},
     {Command::check, "check", "Read a scene and build its cell: is it sound, or what is wrong?"},
     {Command::list, "list", "List the scenes that come with the program"}};
 
@@ -232,11 +233,21 @@ void describe_link(CLI::App& app, Command command, Arguments& a) {
       ->check(CLI::Range(0, 230));
   app.add_option("--link", a.session.link.where,
                  "Link between the sides: dds, dds:INTERFACE or dds:INTERFACE,PEER (Cyclone DDS), "
-                 "udp or udp:ADDRESS:PORT (of the site). Without more it is on this machine. "
-                 "Anyone reaching it can drive the robot: docs/two_machines.md")
+                 "udp or udp:ADDRESS:PORT (of the site). Without more it is on this machine; "
+                 "elsewhere it needs --key: docs/two_machines.md")
       ->default_str(runs::default_link())
       ->type_name("LINK")
       ->check(CLI::Validator(runs::link_complaint, "LINK"));
+  CLI::Option* key =
+      app.add_option(
+             "--key", a.session.link.key_file,
+             "Key of the link, the same on both sides: a file that teleop key wrote. Packets "
+             "are encrypted, and only those by its owners are heard (default: the file "
+             "named by the environment variable REPEL_KEY)")
+          ->type_name("FILE");
+  app.add_flag("--no-key", a.session.link.no_key,
+               "No key, even where other machines reach the link: they can drive the robot")
+      ->excludes(key);
 }
 
 /// What a run prints and writes.
@@ -293,7 +304,7 @@ void settle(const CLI::App& app, Command command, Arguments& a) {
   a.command = command;
   if (command == Command::site) a.session.link.side = link::Side::site;
   if (command == Command::station) a.session.link.side = link::Side::station;
-  for (const char* option : {"--link", "--domain"}) {
+  for (const char* option : {"--link", "--domain", "--key", "--no-key"}) {
     if (command != Command::run || a.programs == "two" || app.count(option) == 0) continue;
     throw CLI::ValidationError(std::string(option) +
                                " belongs to: teleop site, teleop station, or "
@@ -314,6 +325,13 @@ void describe(CLI::App& app, Arguments& a) {
     CLI::App& added = *app.add_subcommand(name, about)->group("Commands");
     added.final_callback([&added, &a, command = command] { settle(added, command, a); });
     if (command == Command::list) continue;
+    if (command == Command::key) {
+      added.add_option("file", a.key_file, "File of the key, which must not exist")
+          ->required()
+          ->type_name("FILE");
+      added.footer("Exit status: 0 it is written, 1 it is not, 2 bad usage.");
+      continue;
+    }
     const bool has_robot = command == Command::run || command == Command::site;
     describe_run(added, command, a);
     if (has_robot) describe_coprocessor(added, a);

@@ -12,13 +12,14 @@
 
 namespace repel::teleop {
 
-enum class Command { run, replay, site, station, check, list };
+enum class Command { run, replay, site, station, key, check, list };
 
 /// What the command line says.
 struct Arguments {
   Command command = Command::run;
   std::string scene = "anderson_4x8";  ///< file or name
   std::string recording;               ///< to replay; empty: none
+  std::string key_file;                ///< to write a key to
   bool has_seconds = false;            ///< --seconds was given
   std::string programs;     ///< "two" or "one", to run the sides in; empty: as the scene says
   double rate_hz = 0.0;     ///< 0: the scene's own

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <cctype>
+#include <cstring>
 #include <set>
 #include <string_view>
 
@@ -19,6 +20,8 @@ namespace {
 using Sample = repel_dds_RemotePacket;
 static_assert(sizeof(Sample) == sizeof(network::RemotePacket),
               "remote_packet.idl has the members of RemotePacket, in their order");
+using SealedSample = repel_dds_SealedPacket;
+static_assert(sizeof(SealedSample) == link::sealed_size);
 
 /// The network interfaces of this machine, by name.
 std::set<std::string> interfaces() {
@@ -62,13 +65,18 @@ std::string configuration(const DdsOptions& options) {
   return xml + "</Discovery></Domain></CycloneDDS>";
 }
 
-class Dds final : public link::Transport {
+/// What a side reads, and what it writes.
+struct Topics {
+  const dds_topic_descriptor_t* type;
+  std::string folder;  ///< of the names
+  int kept;            ///< samples that wait to be read
+};
+
+/// A reader and a writer, in the domain.
+class Ends {
  public:
-  explicit Dds(const DdsOptions& options) : name_("DDS, interface " + options.interface) {
-    if (options.interface != "lo" && options.side == link::Side::site) {
-      exposure_ = "the site listens on the interface " + options.interface + ": " +
-                  link::exposed_to("its network", "--link dds:wg0,10.9.0.1");
-    }
+  Ends(const DdsOptions& options, const Topics& topics)
+      : name_("DDS, interface " + options.interface) {
     if (options.domain != 0) name_ += ", domain " + std::to_string(options.domain);
     if (!options.peer.empty()) name_ += ", peer " + options.peer;
     // A program with both sides has the domain already.
@@ -78,9 +86,13 @@ class Dds final : public link::Transport {
     const bool at_site = options.side == link::Side::site;
     dds_qos_t* qos = dds_create_qos();
     dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);
-    dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 8);
-    const dds_entity_t in = topic(at_site ? "repel/to_site" : "repel/to_station", qos);
-    const dds_entity_t out = topic(at_site ? "repel/to_station" : "repel/to_site", qos);
+    dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, topics.kept);
+    const auto topic = [&](const char* name) {
+      return made("a topic", dds_create_topic(participant_, topics.type,
+                                              (topics.folder + name).c_str(), qos, nullptr));
+    };
+    const dds_entity_t in = topic(at_site ? "to_site" : "to_station");
+    const dds_entity_t out = topic(at_site ? "to_station" : "to_site");
     reader_ = dds_create_reader(participant_, in, qos, nullptr);
     writer_ = dds_create_writer(participant_, out, qos, nullptr);
     dds_delete_qos(qos);
@@ -91,32 +103,26 @@ class Dds final : public link::Transport {
         made("a condition", dds_create_readcondition(reader_, DDS_ANY_STATE));
     made("a condition", dds_waitset_attach(waitset_, arrived, 0));
   }
-  Dds(const Dds&) = delete;
-  Dds& operator=(const Dds&) = delete;
-  ~Dds() override { close(); }
+  Ends(const Ends&) = delete;
+  Ends& operator=(const Ends&) = delete;
+  ~Ends() { close(); }
 
-  bool send(const network::RemotePacket& packet) noexcept override {
-    const auto sample = std::bit_cast<Sample>(packet);
-    return dds_write(writer_, &sample) >= 0;
-  }
-  bool receive(network::RemotePacket& packet) noexcept override {
-    Sample sample;
-    void* samples[1] = {&sample};
+  bool write(const void* sample) noexcept { return dds_write(writer_, sample) >= 0; }
+  /// Into `sample`, of the type of the topics; false: nothing has arrived.
+  bool take(void* sample) noexcept {
+    void* samples[1] = {sample};
     dds_sample_info_t info[1];
     // What comes without data says that a writer has gone.
     while (dds_take(reader_, samples, info, 1, 1) == 1) {
-      if (!info[0].valid_data) continue;
-      packet = std::bit_cast<network::RemotePacket>(sample);
-      return true;
+      if (info[0].valid_data) return true;
     }
     return false;
   }
-  void wait(std::chrono::microseconds longest) noexcept override {
+  void wait(std::chrono::microseconds longest) noexcept {
     dds_attach_t arrived[1];
     (void)dds_waitset_wait(waitset_, arrived, 1, DDS_USECS(longest.count()));
   }
-  [[nodiscard]] std::string name() const override { return name_; }
-  [[nodiscard]] std::string exposure() const override { return exposure_; }
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
 
  private:
   dds_entity_t made(const char* what, dds_return_t entity) {
@@ -125,19 +131,69 @@ class Dds final : public link::Transport {
     throw SetupError("DDS does not make " + std::string(what) + " (" + name_ +
                      "): " + dds_strretcode(entity));
   }
-  [[nodiscard]] dds_entity_t topic(const char* name, const dds_qos_t* qos) {
-    return made("a topic",
-                dds_create_topic(participant_, &repel_dds_RemotePacket_desc, name, qos, nullptr));
-  }
   void close() noexcept {
     if (participant_ > 0) dds_delete(participant_);
     if (domain_ > 0) dds_delete(domain_);
     participant_ = domain_ = 0;
   }
 
-  std::string name_, exposure_;
+  std::string name_;
   dds_entity_t domain_ = 0;  ///< 0: there was one
   dds_entity_t participant_ = 0, reader_ = 0, writer_ = 0, waitset_ = 0;
+};
+
+class Dds final : public link::Transport {
+ public:
+  explicit Dds(const DdsOptions& options)
+      : ends_(options, {&repel_dds_RemotePacket_desc, "repel/", 8}) {
+    if (options.side == link::Side::site) {
+      // Its sockets are bound to no address, whichever interface it sends by.
+      exposure_ = "the site listens by DDS, on every network interface: " +
+                  link::exposed_to("any network of this machine");
+    }
+  }
+
+  bool send(const network::RemotePacket& packet) noexcept override {
+    const auto sample = std::bit_cast<Sample>(packet);
+    return ends_.write(&sample);
+  }
+  bool receive(network::RemotePacket& packet) noexcept override {
+    Sample sample;
+    if (!ends_.take(&sample)) return false;
+    packet = std::bit_cast<network::RemotePacket>(sample);
+    return true;
+  }
+  void wait(std::chrono::microseconds longest) noexcept override { ends_.wait(longest); }
+  [[nodiscard]] std::string name() const override { return ends_.name(); }
+  [[nodiscard]] std::string exposure() const override { return exposure_; }
+
+ private:
+  Ends ends_;
+  std::string exposure_;
+};
+
+/// Sealed packets wait in so large a number that those of others push none out.
+class DdsDatagrams final : public link::Datagrams {
+ public:
+  explicit DdsDatagrams(const DdsOptions& options)
+      : ends_(options, {&repel_dds_SealedPacket_desc, "repel/sealed/", 1024}) {}
+
+  bool send(std::span<const std::byte, link::sealed_size> bytes,
+            const link::Origin& /*to*/) noexcept override {
+    return ends_.write(bytes.data());
+  }
+  std::ptrdiff_t receive(std::span<std::byte> bytes, link::Origin& /*from*/) noexcept override {
+    SealedSample sample;
+    if (!ends_.take(&sample)) return -1;
+    const std::size_t size = std::min(bytes.size(), sizeof sample);
+    std::memcpy(bytes.data(), &sample, size);
+    return static_cast<std::ptrdiff_t>(size);
+  }
+  void wait(std::chrono::microseconds longest) noexcept override { ends_.wait(longest); }
+  [[nodiscard]] std::string name() const override { return ends_.name(); }
+
+ private:
+  Ends ends_;
 };
 
 }  // namespace
@@ -145,6 +201,11 @@ class Dds final : public link::Transport {
 std::unique_ptr<link::Transport> open_dds(const DdsOptions& options) {
   require_known(options);
   return std::make_unique<Dds>(options);
+}
+
+std::unique_ptr<link::Datagrams> open_dds_datagrams(const DdsOptions& options) {
+  require_known(options);
+  return std::make_unique<DdsDatagrams>(options);
 }
 
 }  // namespace repel::dds

@@ -49,6 +49,8 @@ class Impaired final : public Transport {
   }
   [[nodiscard]] std::string exposure() const override { return transport_->exposure(); }
   [[nodiscard]] std::int64_t foreign() const noexcept override { return transport_->foreign(); }
+  [[nodiscard]] bool is_sealed() const noexcept override { return transport_->is_sealed(); }
+  [[nodiscard]] std::int64_t refused() const noexcept override { return transport_->refused(); }
 
  private:
   static constexpr std::size_t room = 4096;

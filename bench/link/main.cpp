@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What a link between two programs costs, on one machine, over each transport: the round trip of a
-/// packet, and the time in the tick.
+/// packet, the time in the tick, and that of sealing.
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -20,6 +21,9 @@
 #ifdef REPEL_BENCH_DDS
 #include <repel/dds/dds.hpp>
 #endif
+#ifdef REPEL_BENCH_SEALED
+#include <repel/sealed/sealed.hpp>
+#endif
 
 #include "../parts.hpp"
 
@@ -31,6 +35,9 @@ using Clock = std::chrono::steady_clock;
 constexpr std::uint16_t port = 17411;
 constexpr std::uint32_t domain = 211;
 constexpr std::chrono::microseconds period(2500);
+#ifdef REPEL_BENCH_SEALED
+constexpr sealed::Key key{1};
+#endif
 
 struct Carrier {
   const char* name;
@@ -44,6 +51,19 @@ std::vector<Carrier> carriers() {
   all.push_back({"Cyclone DDS", [](link::Side side) {
                    return dds::open_dds({.side = side, .peer = {}, .domain = domain});
                  }});
+#endif
+#ifdef REPEL_BENCH_SEALED
+  all.push_back({"UDP, sealed", [](link::Side side) {
+                   return sealed::seal(link::open_udp_datagrams({.side = side, .port = port}), side,
+                                       key);
+                 }});
+#ifdef REPEL_BENCH_DDS
+  all.push_back({"Cyclone DDS, sealed", [](link::Side side) {
+                   return sealed::seal(
+                       dds::open_dds_datagrams({.side = side, .peer = {}, .domain = domain}), side,
+                       key);
+                 }});
+#endif
 #endif
   return all;
 }
@@ -77,6 +97,14 @@ bool comes_back(link::Transport& transport, const network::RemotePacket& sent) {
   return false;
 }
 
+/// Sends from the station until a packet comes back, at most for 20 s.
+void find_each_other(link::Transport& station, network::RemotePacket& packet) {
+  for (int i = 0; i < 20 && !comes_back(station, packet); ++i) {
+    ++packet.sequence;
+    (void)station.send(packet);
+  }
+}
+
 [[nodiscard]] double tenths(double us) {
   return std::round(10.0 * us) / 10.0;
 }
@@ -93,11 +121,7 @@ bench::Result round_trip(const bench::Options& options) {
     const Echo echo(*site);
     network::RemotePacket packet;
     packet.session = packet.heard = options.seed;  // a site answers whom it has heard
-    // Both sides must find each other first.
-    for (int i = 0; i < 20 && !comes_back(*station, packet); ++i) {
-      ++packet.sequence;
-      (void)station->send(packet);
-    }
+    find_each_other(*station, packet);
     DurationHistogram trips, sends;
     int lost = 0;
     auto due = Clock::now();
@@ -206,7 +230,11 @@ bench::Result in_the_tick(const bench::Options& options) {
     const auto site_end = carrier.open(link::Side::site);
     const auto station_end = carrier.open(link::Side::station);
     network::RemotePacket packet;
-    packet.session = options.seed + 1;
+    packet.session = packet.heard = options.seed + 1;
+    {
+      const Echo echo(*site_end);
+      find_each_other(*station_end, packet);
+    }
     const DurationHistogram called = times_of(ticks, [&] {
       network::RemotePacket back;
       const auto time = time_of([&] {
@@ -230,9 +258,91 @@ bench::Result in_the_tick(const bench::Options& options) {
   return result;
 }
 
-constexpr std::array<bench::Part, 2> all{
-    bench::Part{"round_trip", "a packet to the other side and back", round_trip},
-    bench::Part{"in_the_tick", "the time that a link takes of a tick", in_the_tick}};
+#ifdef REPEL_BENCH_SEALED
+/// A way within the program, which costs a copy.
+class Way final : public link::Datagrams {
+ public:
+  using Bytes = std::array<std::byte, link::sealed_size>;
+  Way(std::vector<Bytes>& out, std::vector<Bytes>& in) : out_(out), in_(in) {}
+  bool send(std::span<const std::byte, link::sealed_size> bytes,
+            const link::Origin& /*to*/) noexcept override {
+    std::copy(bytes.begin(), bytes.end(), out_.emplace_back().begin());
+    return true;
+  }
+  std::ptrdiff_t receive(std::span<std::byte> bytes, link::Origin& /*from*/) noexcept override {
+    if (in_.empty()) return -1;
+    std::copy(in_.back().begin(), in_.back().end(), bytes.begin());
+    in_.pop_back();
+    return link::sealed_size;
+  }
+  void wait(std::chrono::microseconds /*longest*/) noexcept override {}
+  [[nodiscard]] std::string name() const override { return "a way within the program"; }
+
+ private:
+  std::vector<Bytes>& out_;
+  std::vector<Bytes>& in_;
+};
+
+bench::Result sealing(const bench::Options& options) {
+  bench::Result result;
+  result.title = "Sealing in the thread of the link, per datagram of 784 bytes";
+  result.columns = {"what", "times", "p50 [us]", "p99 [us]"};
+  const int count = options.quick ? 1000 : 100000;
+  std::vector<Way::Bytes> to_site, to_station;
+  const auto site = sealed::seal(std::make_unique<Way>(to_station, to_site), link::Side::site, key);
+  const auto station =
+      sealed::seal(std::make_unique<Way>(to_site, to_station), link::Side::station, key);
+  network::RemotePacket packet, come;
+  packet.session = options.seed;
+  (void)station->receive(come);  // says hello
+  const Way::Bytes hello = to_site.front();
+  (void)site->receive(come);
+  (void)station->receive(come);
+  DurationHistogram sealed, opened, refused, other, answered;
+  for (int i = 0; i < count; ++i) {
+    ++packet.sequence;
+    sealed.record(time_of([&] { (void)station->send(packet); }));
+    Way::Bytes damaged = to_site.back();
+    bool is_opened = false;
+    opened.record(time_of([&] { is_opened = site->receive(come); }));
+    if (!is_opened || std::memcmp(&come, &packet, sizeof packet) != 0) {
+      result.fail("a packet", "did not come as it was sent");
+    }
+    const auto time_of_one = [&](const Way::Bytes& bytes) {
+      to_site.push_back(bytes);
+      return time_of([&] { (void)site->receive(come); });
+    };
+    damaged[static_cast<std::size_t>(48 + i % 700)] ^= std::byte{1};
+    refused.record(time_of_one(damaged));
+    damaged[8] ^= std::byte{1};
+    other.record(time_of_one(damaged));
+    answered.record(time_of_one(hello));
+    to_station.clear();
+  }
+  if (site->refused() != 2 * count) result.fail("false packets", "were not refused, all of them");
+  const auto row = [&](const char* what, const DurationHistogram& times) {
+    const auto hundredths = [](double us) { return std::round(100.0 * us) / 100.0; };
+    result.rows.push_back(
+        {what, count, hundredths(times.percentile_us(0.5)), hundredths(times.percentile_us(0.99))});
+  };
+  row("a packet is sealed", sealed);
+  row("a packet is opened", opened);
+  row("a false packet of the session is refused", refused);
+  row("a packet of no session is refused", other);
+  row("a hello is answered", answered);
+  result.notes = {"Checked: each packet comes as it was sent, and each false one is refused.",
+                  "Without the system calls that carry a datagram. None of this is in the tick."};
+  return result;
+}
+#endif
+
+constexpr bench::Part all[] = {
+    {"round_trip", "a packet to the other side and back", round_trip},
+    {"in_the_tick", "the time that a link takes of a tick", in_the_tick},
+#ifdef REPEL_BENCH_SEALED
+    {"sealing", "what a key costs", sealing},
+#endif
+};
 constexpr bench::Program program{"link_bench",
                                  "What a link between two programs costs, on one machine.",
                                  all,

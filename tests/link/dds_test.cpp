@@ -7,6 +7,9 @@
 #include <string>
 
 #include "link/joined.hpp"
+#ifdef REPEL_TEST_SEALED
+#include "link/sealed_carriers.hpp"
+#endif
 
 namespace repel::dds {
 namespace dds_test {
@@ -53,5 +56,37 @@ TEST(Dds, RefusesWhatThisMachineHasNot) {
   EXPECT_THROW((void)open_dds({.peer = {}, .domain = 231}), SetupError);
 }
 
+// Whichever interface it sends by, Cyclone DDS listens on all of them.
+TEST(Dds, SaysThatOthersCanReachTheSite) {
+  const std::uint32_t domain = own_domain();
+  const auto exposure_of = [&](link::Side side) {
+    return open_dds({.side = side, .peer = {}, .domain = domain})->exposure();
+  };
+  EXPECT_NE(exposure_of(link::Side::site).find("can drive the robot"), std::string::npos);
+  EXPECT_EQ(exposure_of(link::Side::station), "");
+}
+
 }  // namespace dds_test
 }  // namespace repel::dds
+
+#ifdef REPEL_TEST_SEALED
+namespace repel::test {
+
+INSTANTIATE_TEST_SUITE_P(
+    Carrier, SealedOver,
+    ::testing::Values(SealedCarrier{
+        "Dds",
+        [] {
+          const std::uint32_t domain = dds::dds_test::own_domain();
+          const auto open = [domain](link::Side side) {
+            return dds::open_dds_datagrams({.side = side, .peer = {}, .domain = domain});
+          };
+          // Whoever comes first in a program has the domain, and takes it away
+          // at its end.
+          const std::shared_ptr<link::Datagrams> first = open(link::Side::station);
+          return std::function([open, first](link::Side side) { return open(side); });
+        }}),
+    carrier_name);
+
+}  // namespace repel::test
+#endif

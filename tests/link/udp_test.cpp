@@ -121,7 +121,7 @@ TEST(Udp, SaysWhoElseCanReachTheSite) {
   const std::string open = open_site(options)->exposure();
   EXPECT_NE(open.find("0.0.0.0:" + std::to_string(options.port)), std::string::npos) << open;
   EXPECT_NE(open.find("any network of this machine can drive the robot"), std::string::npos);
-  EXPECT_NE(open.find("--link udp:"), std::string::npos) << open;
+  EXPECT_NE(open.find("--key FILE"), std::string::npos) << open;
   for (const char* const any : {"::", "::ffff:0.0.0.0"}) {
     options.address = any;
     try {
@@ -133,6 +133,15 @@ TEST(Udp, SaysWhoElseCanReachTheSite) {
   // A station hears only where it sends to.
   options.address = "0.0.0.0";
   EXPECT_EQ(open_udp(station_of(options))->exposure(), "");
+}
+
+TEST(Udp, KnowsTheAddressesOfThisMachineAlone) {
+  for (const char* const here : {"127.0.0.1", "127.3.2.1", "::1", "::ffff:127.0.0.1"}) {
+    EXPECT_TRUE(is_on_this_machine({.address = here})) << here;
+  }
+  for (const char* const elsewhere : {"0.0.0.0", "10.0.0.7", "::", "fe80::1", "::ffff:10.0.0.7"}) {
+    EXPECT_FALSE(is_on_this_machine({.address = elsewhere})) << elsewhere;
+  }
 }
 
 TEST(Udp, CountsWhatIsNoPacket) {

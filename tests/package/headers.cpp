@@ -25,12 +25,17 @@
 #include <repel/simulated/simulated_arm.hpp>
 #endif
 #ifdef PART_link
+#include <repel/link/datagrams.hpp>
 #include <repel/link/link_thread.hpp>
 #include <repel/link/udp.hpp>
 #include <repel/link/wire.hpp>
 #endif
 #ifdef PART_dds
 #include <repel/dds/dds.hpp>
+#endif
+#ifdef PART_sealed
+#include <repel/sealed/key.hpp>
+#include <repel/sealed/sealed.hpp>
 #endif
 #ifdef PART_percepts
 #include <repel/percepts/depth_image_file.hpp>

@@ -26,16 +26,44 @@ std::string own_port() {
   return std::to_string(20000 + getpid() % 20000);
 }
 
-/// The links that this build has.
-std::vector<std::string> links() {
+#ifdef REPEL_RUNS_DDS
+constexpr bool has_dds = true;
+#else
+constexpr bool has_dds = false;
+#endif
+#ifdef REPEL_RUNS_SEALED
+constexpr bool can_seal = true;
+#else
+constexpr bool can_seal = false;
+#endif
+
+/// A new key in the folder.
+std::string key_in(const Folder& folder, const std::string& name = "key") {
+  const Ending ending = teleop("key " + quoted(folder / name));
+  EXPECT_EQ(ending.status, 0) << ending;
+  return folder / name;
+}
+
+/// Options of a link that others could reach.
+std::string guarded(const Folder& folder) {
+  return can_seal ? "--key " + quoted(key_in(folder)) : "--no-key";
+}
+
+/// The links that this build has, and the options of their guard.
+std::vector<std::string> links(const Folder& folder) {
+  const std::string guard = " " + guarded(folder);
   std::vector<std::string> all{"udp:127.0.0.1:" + own_port(), "'udp:[::1]:" + own_port() + "'"};
-  if (teleop("site --help").says("LINK=dds")) all.emplace_back("dds");
+  if (can_seal) all.push_back("udp:127.0.0.1:" + own_port() + guard);
+  if (has_dds) all.emplace_back("dds");
+  if (has_dds && can_seal) all.push_back("dds" + guard);
   return all;
 }
 
 TEST(TwoPrograms, ShareASceneOverEachLink) {
-  for (const std::string& link : links()) {
+  const Folder keys;
+  for (const std::string& link : links(keys)) {
     SCOPED_TRACE(link);
+    const bool is_sealed = link.find("--key") != std::string::npos;
     bool has_address = true;
     const std::vector<json> reports = undisturbed([&]() -> std::vector<json> {
       const Folder folder;
@@ -64,6 +92,7 @@ TEST(TwoPrograms, ShareASceneOverEachLink) {
                 at_site.at("energy_sent_j").get<double>() * (1.0 + 1e-9));
       EXPECT_GT(there.at("nearest_wall_m"), 0.0);
       for (const json& report : {there, here}) {
+        EXPECT_EQ(report.at("link").at("sealed"), is_sealed);
         for (const char* count : {"packets_beyond_bounds", "packets_refused", "partners_closed"}) {
           EXPECT_EQ(report.at("link").at(count), 0) << count;
         }
@@ -78,6 +107,7 @@ TEST(TwoPrograms, ShareASceneOverEachLink) {
     if (reports.empty()) GTEST_SKIP() << stood_still;
     for (const json& report : reports) {
       EXPECT_EQ(report.at("link").at("partner_sessions"), 1);
+      EXPECT_EQ(report.at("link").at("refused_packets"), 0);
       EXPECT_GT(report.at("link").at("packets_received"), 500);
     }
     EXPECT_GT(reports[1].at("site_heard_s"), 1.0);
@@ -90,8 +120,8 @@ TEST(TwoPrograms, ASiteThatOthersCanReachSaysSoAtTheStartAndInTheReport) {
   for (const bool is_open : {true, false}) {
     const Folder folder;
     const std::string address = is_open ? "0.0.0.0:" : "127.0.0.1:";
-    const Ending ending = teleop("site delayed --seconds 0.2 --link udp:" + address + own_port() +
-                                 " --report " + quoted(folder / "site.json"));
+    const Ending ending = teleop("site delayed --no-key --seconds 0.2 --link udp:" + address +
+                                 own_port() + " --report " + quoted(folder / "site.json"));
     ASSERT_EQ(ending.status, 0) << ending;
     const json report = report_of(folder / "site.json");
     const std::string exposure = report.at("link").at("exposure");
@@ -100,6 +130,62 @@ TEST(TwoPrograms, ASiteThatOthersCanReachSaysSoAtTheStartAndInTheReport) {
     EXPECT_EQ(report.at("warnings").dump().find("can drive the robot") != std::string::npos,
               is_open);
   }
+}
+
+TEST(TwoPrograms, AnotherKeyIsNotHeardAndTheReportSaysSo) {
+  if (!can_seal) GTEST_SKIP() << "needs libsodium";
+  const Folder folder;
+  const std::string link = "--link udp:127.0.0.1:" + own_port();
+  Ending of_site;
+  std::thread site([&] {
+    of_site = teleop("site delayed --seconds 3 " + link + " --key " +
+                     quoted(key_in(folder, "one")) + " --report " + quoted(folder / "site.json"));
+  });
+  const Ending of_station =
+      teleop("station delayed --seconds 2 " + link + " --key " + quoted(key_in(folder, "other")));
+  site.join();
+  EXPECT_TRUE(of_station.says("NOT heard")) << of_station;
+  const json at_site = report_of(folder / "site.json").at("link");
+  EXPECT_EQ(at_site.at("sealed"), true);
+  EXPECT_GT(at_site.at("refused_packets"), 0);
+  EXPECT_EQ(at_site.at("packets_received"), 0);
+  EXPECT_EQ(at_site.at("partner_sessions"), 0);
+}
+
+TEST(TwoPrograms, ALinkThatOthersReachNeedsAKey) {
+  for (const std::string& link : {"udp:0.0.0.0:" + own_port(), "udp:192.0.2.1:" + own_port()}) {
+    for (const std::string side : {"site", "station"}) {
+      const Ending ending = teleop(side + " delayed --seconds 0.2 --link " + link);
+      EXPECT_EQ(ending.status, 1) << ending;
+      EXPECT_TRUE(ending.says("needs a key")) << ending;
+      EXPECT_TRUE(ending.says("teleop key FILE")) << ending;
+      EXPECT_TRUE(ending.says("--no-key")) << ending;
+    }
+  }
+  if (has_dds) {
+    EXPECT_TRUE(teleop("site delayed --seconds 0.2 --link dds:eth0").says("needs a key"));
+    const Ending local = teleop("site delayed --seconds 0.2 --link dds");
+    EXPECT_EQ(local.status, 0) << local;
+    EXPECT_TRUE(local.says("every network interface")) << local;
+  }
+  const Folder folder;
+  const std::string own = "site delayed --seconds 0.2 --link udp:127.0.0.1:" + own_port();
+  if (!can_seal) {
+    EXPECT_TRUE(teleop(own + " --key any").says("apt-get install libsodium-dev"));
+    EXPECT_TRUE(teleop("key " + quoted(folder / "key")).says("apt-get install libsodium-dev"));
+    return;
+  }
+  const Ending missing = teleop(own + " --key " + quoted(folder / "none"));
+  EXPECT_EQ(missing.status, 1) << missing;
+  EXPECT_TRUE(missing.says("none: the key cannot be read")) << missing;
+  const std::string key = key_in(folder);
+  EXPECT_EQ(teleop("key " + quoted(key)).status, 1) << "a key is overwritten";
+  // The environment names a key for all that have no other.
+  ASSERT_EQ(setenv("REPEL_KEY", key.c_str(), 1), 0);
+  EXPECT_TRUE(teleop(own).says("sealed"));
+  EXPECT_FALSE(teleop(own + " --no-key").says("sealed"));
+  EXPECT_EQ(teleop("delayed --fast --seconds 0.1").status, 0);
+  ASSERT_EQ(unsetenv("REPEL_KEY"), 0);
 }
 
 TEST(TwoPrograms, RunInOneCommand) {
@@ -261,12 +347,15 @@ void expect_linked(const json& site, const json& station, int delay_ms) {
   }
 }
 
-/// Links of the two machines, as each of them names it.
-std::vector<std::pair<std::string, std::string>> links_of(const TwoMachines& machines) {
+/// Links of the two machines, as each of them names it, with the options of their guard.
+std::vector<std::pair<std::string, std::string>> links_of(const TwoMachines& machines,
+                                                          const Folder& keys) {
+  const std::string guard = " " + guarded(keys);
   std::vector<std::pair<std::string, std::string>> both{
-      {"udp:10.77.9.1:7411", "udp:10.77.9.1:7411"}};
-  if (teleop("site --help").says("LINK=dds")) {
-    both.emplace_back("dds:" + machines.interface("a"), "dds:" + machines.interface("b"));
+      {"udp:10.77.9.1:7411" + guard, "udp:10.77.9.1:7411" + guard}};
+  if (has_dds) {
+    both.emplace_back("dds:" + machines.interface("a") + guard,
+                      "dds:" + machines.interface("b") + guard);
   }
   return both;
 }
@@ -277,7 +366,8 @@ TEST(TwoPrograms, BetweenTwoMachinesAStationMayBeKilledAndAnotherMayCome) {
   const TwoMachines machines;
   if (!machines.are_there()) GTEST_SKIP() << "needs iproute2, and root for network namespaces";
   int delay_ms = 0;
-  for (const auto& [at_a, at_b] : links_of(machines)) {
+  const Folder keys;
+  for (const auto& [at_a, at_b] : links_of(machines, keys)) {
     SCOPED_TRACE(at_a + ", ms: " + std::to_string(delay_ms));
     Silences silences;
     const std::vector<json> sides = undisturbed([&]() -> std::vector<json> {
@@ -321,7 +411,8 @@ TEST(TwoPrograms, BetweenTwoMachinesAStationMayBeKilledAndAnotherMayCome) {
 TEST(TwoPrograms, BetweenTwoMachinesASiteMayBeKilledAndAnotherMayCome) {
   const TwoMachines machines;
   if (!machines.are_there()) GTEST_SKIP() << "needs iproute2, and root for network namespaces";
-  const std::string link = links_of(machines).front().first;
+  const Folder keys;
+  const std::string link = links_of(machines, keys).front().first;
   const std::vector<json> sides = undisturbed([&]() -> std::vector<json> {
     const Folder folder;
     const std::string scene = " " + quoted(delayed_by(200, folder));
@@ -385,6 +476,10 @@ TEST(TwoPrograms, WhatCannotBeDividedIsRefused) {
       {"delayed --impaired", 2, "--impaired belongs to: teleop site, teleop station"},
       {"delayed --programs two --impaired", 2, "--impaired belongs to"},
       {"site delayed --domain 231", 2, "--domain"},
+      {"site delayed --key a --no-key", 2, "--no-key"},
+      {"delayed --key a", 2, "--key belongs to: teleop site, teleop station"},
+      {"key", 2, "file is required"},
+      {"key /", 1, "is there already"},
   };
   for (const auto& each : cases) {
     const Ending ending = teleop(each.arguments);

@@ -52,6 +52,10 @@ class LinkThread {
   }
   /// After `stop`: invalid messages received, and packets that could not be sent.
   [[nodiscard]] std::int64_t foreign() const noexcept { return transport_->foreign(); }
+  /// Transport::is_sealed.
+  [[nodiscard]] bool is_sealed() const noexcept { return transport_->is_sealed(); }
+  /// After `stop`: Transport::refused.
+  [[nodiscard]] std::int64_t refused() const noexcept { return transport_->refused(); }
   /// Packets that the transport did not take.
   [[nodiscard]] std::int64_t unsent() const noexcept { return unsent_; }
 

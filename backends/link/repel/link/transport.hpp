@@ -18,11 +18,10 @@ enum class Side {
 };
 
 /// Warning about a transport open to `whom`: they can drive the robot, and what to do about it.
-[[nodiscard]] inline std::string exposed_to(const std::string& whom, const std::string& instead) {
+[[nodiscard]] inline std::string exposed_to(const std::string& whom) {
   return "anyone on " + whom +
-         " can drive the robot: there is no encryption and no authentication; use a network of "
-         "your own or a tunnel, and name its address: " +
-         instead;
+         " can drive the robot: without a key there is no encryption and no authentication; teleop "
+         "key FILE makes one, for --key FILE on both sides";
 }
 
 /// Carries packets to the other side and back; any may be lost, doubled or overtaken. For one
@@ -47,6 +46,10 @@ class Transport {
   [[nodiscard]] virtual std::string exposure() const { return {}; }
   /// Count of messages other than packets of this version.
   [[nodiscard]] virtual std::int64_t foreign() const noexcept { return foreign_; }
+  /// Whether only those with a key of both sides are heard, and can read what is sent.
+  [[nodiscard]] virtual bool is_sealed() const noexcept { return false; }
+  /// If it is: count of datagrams that were not by the other side, or not for the first time.
+  [[nodiscard]] virtual std::int64_t refused() const noexcept { return 0; }
 
  protected:
   /// Counts an invalid message.

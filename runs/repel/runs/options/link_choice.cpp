@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <any>
 #include <charconv>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <random>
 #include <string_view>
+#include <utility>
 
 #include <repel/base/setup_error.hpp>
 #include <repel/link/impaired.hpp>
@@ -16,12 +18,21 @@
 #ifdef REPEL_RUNS_DDS
 #include <repel/dds/dds.hpp>
 #endif
+#ifdef REPEL_RUNS_SEALED
+#include <repel/sealed/sealed.hpp>
+#endif
 
 namespace repel::runs {
 namespace {
 
 constexpr const char* forms =
     "dds, dds:INTERFACE, dds:INTERFACE,PEER, udp, udp:ADDRESS:PORT or udp:[ADDRESS]:PORT";
+
+#ifndef REPEL_RUNS_SEALED
+constexpr const char* no_sodium =
+    "a key needs libsodium, which is not built in; to have it: apt-get install libsodium-dev, and "
+    "build again";
+#endif
 
 /// The text behind "NAME:"; empty for NAME alone, none for another name.
 std::optional<std::string> behind(const std::string& text, std::string_view name) {
@@ -56,6 +67,16 @@ std::string default_link() {
 #endif
 }
 
+#ifdef REPEL_RUNS_SEALED
+void make_link_key(const std::string& file) {
+  sealed::make_key(file);
+}
+#else
+void make_link_key(const std::string& /*file*/) {
+  throw SetupError(no_sodium);
+}
+#endif
+
 std::string link_complaint(const std::string& where) {
   std::string allowed = "'" + where + "' names no link; allowed: " + forms;
   if (const auto place = behind(where, "udp")) return udp_place(*place) ? "" : allowed;
@@ -71,16 +92,50 @@ std::string link_complaint(const std::string& where) {
 
 namespace {
 
+/// The file of the key; empty: none.
+std::string key_file_of(const LinkChoice& choice) {
+  if (choice.no_key || !choice.key_file.empty()) return choice.key_file;
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): nothing changes the environment
+  const char* const file = std::getenv("REPEL_KEY");
+  return file == nullptr ? "" : file;
+}
+
+/// @throws SetupError for a place beyond the loopback interface
+void require_on_this_machine(const std::string& where) {
+  const auto place = behind(where, "udp");
+  if (place ? link::is_on_this_machine(*udp_place(*place)) : where == "dds" || where == "dds:lo") {
+    return;
+  }
+  throw SetupError("--link " + where +
+                   " needs a key, for other machines reach it; allowed: --key FILE on both sides, "
+                   "with the same key, which teleop key FILE makes; --no-key, for whoever reaches "
+                   "it to drive the robot; or --link udp");
+}
+
 /// @param agreement of both sides
 std::unique_ptr<link::Transport> open_place(const LinkChoice& choice, std::uint64_t agreement) {
   const std::string where = choice.where.empty() ? default_link() : choice.where;
   if (const std::string complaint = link_complaint(where); !complaint.empty()) {
     throw SetupError(complaint);
   }
+  const std::string key_file = key_file_of(choice);
+  if (key_file.empty() && !choice.no_key) require_on_this_machine(where);
+#ifdef REPEL_RUNS_SEALED
+  std::optional<sealed::Key> key;
+  if (!key_file.empty()) key = sealed::load_key(key_file);
+  const auto under_key = [&](std::unique_ptr<link::Datagrams> datagrams) {
+    return sealed::seal(std::move(datagrams), *choice.side, *key);
+  };
+#else
+  if (!key_file.empty()) throw SetupError(no_sodium, key_file);
+#endif
   if (const auto place = behind(where, "udp")) {
     link::UdpOptions options = *udp_place(*place);
     options.side = *choice.side;
     options.agreement = agreement;
+#ifdef REPEL_RUNS_SEALED
+    if (key) return under_key(link::open_udp_datagrams(options));
+#endif
     return link::open_udp(options);
   }
 #ifdef REPEL_RUNS_DDS
@@ -91,6 +146,9 @@ std::unique_ptr<link::Transport> open_place(const LinkChoice& choice, std::uint6
   const std::size_t comma = place.find(',');
   if (!place.empty()) options.interface = place.substr(0, comma);
   if (comma != std::string::npos) options.peer = place.substr(comma + 1);
+#ifdef REPEL_RUNS_SEALED
+  if (key) return under_key(dds::open_dds_datagrams(options));
+#endif
   return dds::open_dds(options);
 #else
   return nullptr;

@@ -16,18 +16,25 @@ namespace repel::runs {
 
 struct LinkChoice {
   std::optional<link::Side> side;  ///< of this program; none: it has both
-  std::string where;         ///< "dds:INTERFACE,PEER", "udp:ADDRESS:PORT"; empty: default_link
+  std::string where;         ///< "dds:INTERFACE,PEER", "udp:ADDRESS:PORT"; empty: default_link()
   std::uint32_t domain = 0;  ///< of DDS
   bool is_impaired = false;  ///< what is sent is treated as by the line of the scene
+  std::string key_file;      ///< of the key of both sides; empty: that of REPEL_KEY, if it is set
+  bool no_key = false;       ///< without a key, also where other machines reach the link
 };
 
-/// DDS if it is built in, else UDP; both on the loopback interface.
+/// DDS on the loopback interface where it is built in, else UDP.
 [[nodiscard]] std::string default_link();
+
+/// Writes a new key for a link, to a file that does not exist. @throws SetupError otherwise, and
+/// where libsodium is not built in
+void make_link_key(const std::string& file);
 
 /// What is wrong with a place to link to; empty: nothing.
 [[nodiscard]] std::string link_complaint(const std::string& where);
 
-/// @throws SetupError if it is not available, saying what to do
+/// @throws SetupError if it is not available, for a file without a key, and for a link without a
+/// key that other machines can reach, saying what to do
 [[nodiscard]] std::unique_ptr<link::Transport> open_link(const LinkChoice& choice,
                                                          const scene::Scene& scene);
 

@@ -16,6 +16,8 @@ void note_link(const network::RemoteLink& link, const link::LinkThread& thread,
                LinkResult& result) {
   result.name = thread.name();
   result.exposure = thread.exposure();
+  result.is_sealed = thread.is_sealed();
+  result.refused = thread.refused();
   result.counts = link.counts();
   result.foreign = thread.foreign();
   result.unsent = thread.unsent();
@@ -54,6 +56,14 @@ void print_link(const LinkResult& r, std::FILE* out) {
         host::figure(r.energy_sent, 3).c_str(), host::figure(r.partner_played, 3).c_str(),
         host::figure(r.partner_sent, 3).c_str(), host::figure(r.energy_played, 3).c_str());
   }
+  if (!r.is_sealed) {
+    std::fprintf(out, "  key                    none: who reaches the link is heard\n");
+  } else if (r.refused > 0) {
+    std::fprintf(out,
+                 "  key                    refused %lld packets: without it or with another one, "
+                 "changed, or played again\n",
+                 count(r.refused));
+  }
   if (c.sessions > 1) {
     std::fprintf(out, "  the other side         began anew %lld times\n", count(c.sessions - 1));
   }
@@ -82,6 +92,8 @@ nlohmann::ordered_json link_to_json(const LinkResult& r) {
   const network::RemoteCounts& c = r.counts;
   return {{"name", r.name},
           {"exposure", r.exposure},
+          {"sealed", r.is_sealed},
+          {"refused_packets", r.refused},
           {"packets_sent", c.sent},
           {"packets_received", c.received},
           {"packets_lost", c.lost},

@@ -18,8 +18,11 @@ class LinkThread;
 namespace repel::runs {
 
 struct LinkResult {
-  std::string name;      ///< of the transport, for people
-  std::string exposure;  ///< warning and advice if other machines can reach it; empty: none can
+  std::string name;        ///< of the transport, for people
+  std::string exposure;    ///< warning and advice if other machines can reach it; empty: none can
+  bool is_sealed = false;  ///< with a key
+  std::int64_t refused =
+      0;  ///< with a key: datagrams not by the other side, or not for the first time
   network::RemoteCounts counts;
   std::int64_t foreign = 0;  ///< messages other than packets of this version, or of strangers
   std::int64_t unsent = 0;   ///< packets refused by the transport
