@@ -23,6 +23,7 @@ struct Origin {
   sockaddr_storage address{};  ///< of a socket
   socklen_t size = 0;          ///< of the address
 
+  /// Whether they are the same place.
   friend bool operator==(const Origin& a, const Origin& b) noexcept {
     return a.size == b.size && std::memcmp(&a.address, &b.address, a.size) == 0;
   }
