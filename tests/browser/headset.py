@@ -224,7 +224,6 @@ class Headset(WithHeadset, SharedProgram):
 
     @by_the_clock
     def test_a_turn_of_the_hand_turns_the_tool(self):
-        page = self.page
         self.begin_holding()
         self.do("""
             let angle = 0;
@@ -244,7 +243,6 @@ class Headset(WithHeadset, SharedProgram):
 
     @by_the_clock
     def test_a_wall_is_felt_the_more_the_harder(self):
-        page = self.page
         self.begin_holding()
         self.lead("right", DOWN)
         self.drives(lambda s: s["force"][2] > 15, "the table pushes up")
