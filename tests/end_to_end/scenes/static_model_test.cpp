@@ -124,15 +124,15 @@ TEST(StaticModel, OfAnMjcfFilePushesAsTheSceneWould) {
                     "<geom name='plate' type='box' size='0.3 0.4 0.025'/></body>"
                     "<geom name='post' type='sphere' size='0.1' pos='0 0 5'/>"
                     "</worldbody></mujoco>");
-  const auto peak_in = [&](const std::string& with) {
+  const auto peak_in = [&](const std::string& with) -> double {
     std::string text = text_of(folder / "scene.yaml");
     text.replace(text.find("shape: urdf, file: cell.urdf"), 28, with);
     const Ending ending = teleop(quoted(folder.with("mjcf.yaml", text)) +
                                  " --fast --seconds 2 --report " + quoted(folder / "r.json"));
     EXPECT_EQ(ending.status, 0) << ending;
-    for (const auto& obstacle : report_of(folder / "r.json").at("obstacles")) {
-      if (obstacle.at("name") == "cell/table/plate")
-        return obstacle.at("peak_force_n").get<double>();
+    const nlohmann::json report = report_of(folder / "r.json");
+    for (const nlohmann::json& obstacle : report.at("obstacles")) {
+      if (obstacle.at("name") == "cell/table/plate") return obstacle.at("peak_force_n");
     }
     return 0.0;
   };

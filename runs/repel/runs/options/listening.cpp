@@ -130,6 +130,9 @@ std::string listen_complaint(const std::string& listen) {
 
 std::string settle_secret(SessionOptions& session) {
   const bool has_secret = !session.secret_file.empty() || !session.secret_env.empty();
+  if (has_secret) {
+    if (const std::string complaint = read_secret(session); !complaint.empty()) return complaint;
+  }
   const std::optional<Place> place = place_of(session.listen);
   std::string missing;
   if (session.view && place && !is_loopback(*place)) {
@@ -140,11 +143,9 @@ std::string settle_secret(SessionOptions& session) {
       missing += "--tls self, --tls CERTIFICATE,KEY or, where all may read and drive, --plain, ";
     }
   }
-  if (!missing.empty()) {
-    return "--listen: other machines reach " + session.listen + "; add " + missing +
-           "or listen on 127.0.0.1 and come through ssh -L";
-  }
-  return has_secret ? read_secret(session) : "";
+  if (missing.empty()) return {};
+  return "--listen: other machines reach " + session.listen + "; add " + missing +
+         "or listen on 127.0.0.1 and come through ssh -L";
 }
 
 std::string tls_complaint(const std::string& tls) {
