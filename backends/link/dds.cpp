@@ -147,7 +147,7 @@ class Dds final : public link::Transport {
   explicit Dds(const DdsOptions& options)
       : ends_(options, {&repel_dds_RemotePacket_desc, "repel/", 8}) {
     if (options.side == link::Side::site) {
-      // Its sockets are bound to no address, whichever interface it sends by.
+      // Cyclone DDS binds its sockets to every interface; the chosen one is for sending.
       exposure_ = "the site listens by DDS, on every network interface: " +
                   link::exposed_to("any network of this machine");
     }

@@ -168,7 +168,7 @@ class SealedTransport final : public link::Transport {
     std::memcpy(&numbers, in.data() + numbers_at, sizeof numbers);
     return numbers;
   }
-  /// Of the encryption: the count in the head, which no packet under one key has again.
+  /// Nonce of the encryption: the count in the head, unique under a key.
   [[nodiscard]] static std::array<unsigned char, 12> nonce_of(const Bytes& bytes) noexcept {
     std::array<unsigned char, 12> nonce{};
     static_assert(sizeof nonce == crypto_aead_chacha20poly1305_ietf_NPUBBYTES);

@@ -2,6 +2,7 @@
 """What the tests have in common: one browser, of which each has a tab of its own."""
 
 import functools
+import os
 import tempfile
 import time
 import unittest
@@ -179,6 +180,17 @@ class OwnProgram(InBrowser):
         self.addCleanup(live.stop_program, program)
         return url
 
+    def start_with_two_hands(self):
+        text = live.scene_text("six_axes")
+        one = next(line for line in text.splitlines() if "{module: six_axes" in line)
+        two = ("  - {module: six_axes, name: left, to: both}\n"
+               "  - {module: six_axes, name: right, hand: second, to: both}\n"
+               "  - {module: junction, name: both}")
+        scene = os.path.join(self.folder(), "scene.yaml")
+        with open(scene, "w", encoding="utf-8") as file:
+            file.write(text.replace(one, two))
+        return self.start(scene)
+
 
 class SharedProgram(InBrowser):
     """One program for the tests of a group."""
@@ -195,3 +207,17 @@ class SharedProgram(InBrowser):
     def tearDownClass(cls):
         if cls.program:
             live.stop_program(cls.program)
+
+
+class FromTheBeginning(SharedProgram):
+    """Each test finds the run paused at its beginning."""
+
+    def setUp(self):
+        super().setUp()
+        if self.open(self.url).state()["mode"] == "replay":
+            self.skipTest("this server plays a recording")
+        self.page.begin()
+
+    def tearDown(self):
+        self.page.release()
+        self.has_no_errors()

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the hand feels and switches, and boxes that it brings."""
 
-import os
 
 import live
 from cases import OwnProgram, by_the_clock
@@ -112,15 +111,7 @@ class Hand(OwnProgram):
 
     @by_the_clock
     def test_the_keys_move_the_hand_that_is_chosen(self):
-        text = live.scene_text("six_axes")
-        one = next(line for line in text.splitlines() if "{module: six_axes" in line)
-        two = ("  - {module: six_axes, name: left, to: both}\n"
-               "  - {module: six_axes, name: right, hand: second, to: both}\n"
-               "  - {module: junction, name: both}")
-        scene = os.path.join(self.folder(), "scene.yaml")
-        with open(scene, "w", encoding="utf-8") as file:
-            file.write(text.replace(one, two))
-        page = self.open(self.start(scene))
+        page = self.open(self.start_with_two_hands())
         page.begin()
         self.take(page)
         self.assertTrue(page.shown("hand-row"))

@@ -7,7 +7,7 @@ import math
 import os
 
 import live
-from cases import InBrowser, OwnProgram, SharedProgram, by_the_clock
+from cases import FromTheBeginning, InBrowser, OwnProgram, SharedProgram, by_the_clock
 from fingers import PHONE, SMALLEST
 
 VENDOR = os.path.join(live.ROOT, "tests", "browser", "vendor")
@@ -157,18 +157,8 @@ class WithHeadset(InBrowser):
         return self.page.drives(look, what)
 
 
-class Headset(WithHeadset, SharedProgram):
+class Headset(WithHeadset, FromTheBeginning):
     """Each test finds the run paused at its beginning, and nobody in the headset."""
-
-    def setUp(self):
-        super().setUp()
-        if self.open(self.url).state()["mode"] == "replay":
-            self.skipTest("this server plays a recording")
-        self.page.begin()
-
-    def tearDown(self):
-        self.page.release()
-        self.has_no_errors()
 
     def test_one_enters_and_leaves(self):
         page = self.page
@@ -482,15 +472,7 @@ class HeadsetSwitches(WithHeadset, OwnProgram):
 
     @by_the_clock
     def test_each_hand_moves_its_own_where_there_are_two(self):
-        text = live.scene_text("six_axes")
-        one = next(line for line in text.splitlines() if "{module: six_axes" in line)
-        two = ("  - {module: six_axes, name: left, to: both}\n"
-               "  - {module: six_axes, name: right, hand: second, to: both}\n"
-               "  - {module: junction, name: both}")
-        scene = os.path.join(self.folder(), "scene.yaml")
-        with open(scene, "w", encoding="utf-8") as file:
-            file.write(text.replace(one, two))
-        page = self.open(self.start(scene))
+        page = self.open(self.start_with_two_hands())
         page.begin()
         self.enter()
         self.squeeze("left", 1)

@@ -6,24 +6,14 @@ import re
 import subprocess
 
 import live
-from cases import OwnProgram, SharedProgram, by_the_clock
+from cases import FromTheBeginning, OwnProgram, by_the_clock
 from live import SCENE, Page, listening, stop_program
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 
 
-class LiveView(SharedProgram):
+class LiveView(FromTheBeginning):
     """Each test finds the run paused at its beginning."""
-
-    def setUp(self):
-        super().setUp()
-        if self.open(self.url).state()["mode"] == "replay":
-            self.skipTest("this server plays a recording")
-        self.page.begin()
-
-    def tearDown(self):
-        self.page.release()
-        self.has_no_errors()
 
     def test_draws_the_scene(self):
         self.draw_pixels()
