@@ -47,20 +47,14 @@ Work work_of(const Arguments& arguments) {
     work.scene = work.recording->scene;
     work.options = work.recording->options;
   } else {
-    work.scene = scene::load(find_scene(arguments.scene));
-    work.options = arguments.run;
-    const runs::RunOptions asked = runs::options_of(work.scene);
-    work.options.rate_hz = arguments.rate_hz > 0.0 ? arguments.rate_hz : asked.rate_hz;
-    const auto mode = coprocessor_mode_named(arguments.coprocessor);
-    work.options.coprocessor = mode.value_or(asked.coprocessor);
-    const int threads = std::max(asked.threads, mode ? 1 : 0);
-    work.options.threads = arguments.threads >= 0 ? arguments.threads : threads;
+    work.scene = runs::scene_of(arguments.choice, find_scene(arguments.scene));
+    work.options = runs::options_of(arguments.choice, work.scene);
     const bool is_driven = arguments.session.view || !arguments.session.device.empty() ||
                            arguments.session.link.side == link::Side::site;
-    if (is_driven && !arguments.has_seconds) work.options.seconds = until_stopped;
+    if (is_driven && !arguments.choice.has_seconds) work.options.seconds = until_stopped;
   }
   work.options.keep_records = !arguments.html.empty();
-  work.options.log = arguments.run.log;
+  work.options.log = arguments.choice.run.log;
   return work;
 }
 
@@ -114,9 +108,9 @@ void require_files_apart(const Arguments& arguments, const Work& work) {
   add(work.scene.robot);
   for (const scene::OtherArm& partner : work.scene.partners) add(partner.robot);
   for (const scene::StaticModel& model : work.scene.models) read.push_back({"a model", model.file});
-  host::require_apart(
-      read,
-      {{"--log", arguments.run.log}, {"--report", arguments.report}, {"--html", arguments.html}});
+  host::require_apart(read, {{"--log", arguments.choice.run.log},
+                             {"--report", arguments.report},
+                             {"--html", arguments.html}});
 }
 
 /// Writes a report file after the run. On failure prints it on stderr and returns false.
@@ -174,6 +168,9 @@ std::unique_ptr<runs::StationProgram> station_beside(const Work& work,
                                  "--domain=" + std::to_string(session.link.domain),
                                  "--rate=" + std::to_string(work.options.rate_hz),
                                  "--seconds=1e6"};
+  for (const scene::Change& change : work.scene.changes) {
+    words.push_back("--set=" + change.path + "=" + change.value);
+  }
   if (!session.link.key_file.empty()) words.push_back("--key=" + session.link.key_file);
   if (session.link.no_key) words.emplace_back("--no-key");
   if (!session.device.empty()) {
@@ -188,6 +185,9 @@ std::unique_ptr<runs::StationProgram> station_beside(const Work& work,
 int run_session(const Arguments& arguments, const Work& work) {
   const runs::Recording* recording = work.recording ? &*work.recording : nullptr;
   runs::SessionOptions session = arguments.session;
+  for (const std::string& file : arguments.choice.hands) {
+    session.tracks.push_back(runs::read_hand_track(file));
+  }
   host::Output report(arguments.report);
   host::Output html(arguments.html);
   StatusLine status(arguments, work);

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options.hpp"
 
-#include <iterator>
+#include <map>
 #include <string>
 #include <vector>
 
 #include <repel/runs/arms/arm_backend.hpp>
 #include <repel/runs/operator/device.hpp>
-#include <repel/runs/options/budget.hpp>
 #include <repel/runs/options/link_choice.hpp>
 #include <repel/runs/options/listening.hpp>
-#include <repel/simulated/changed_arm.hpp>
 
 #include "scenes.hpp"
 
@@ -31,48 +29,7 @@ constexpr CommandEntry commands[] = {
     {Command::check, "check", "Read a scene and build its cell: is it sound, or what is wrong?"},
     {Command::list, "list", "List the scenes that come with the program"}};
 
-/// The names of the simulated arms that satisfy `wanted`.
-template <class Wanted>
-std::vector<std::string> backend_names(const Wanted& wanted) {
-  std::vector<std::string> names;
-  for (const runs::ArmBackend& backend : runs::arm_backends()) {
-    if (wanted(backend)) names.emplace_back(backend.name);
-  }
-  return names;
-}
-
-bool has_contact(const runs::ArmBackend& backend) {
-  return backend.has_contact;
-}
-bool has_gravity(const runs::ArmBackend& backend) {
-  return backend.has_gravity;
-}
-
-/// The names of these arms, as a sentence has them: "a, b or c".
-template <class Wanted>
-std::string backends_in_words(const Wanted& wanted) {
-  std::string words = CLI::detail::join(backend_names(wanted), ", ");
-  const std::size_t last = words.rfind(", ");
-  return last == std::string::npos ? words : words.replace(last, 2, " or ");
-}
-
-/// @throws CLI::ValidationError if an option asks the back end for what it does not simulate
-void require_able(const Arguments& a) {
-  const runs::ArmBackend& chosen = runs::arm_backend(a.run.backend);
-  const auto require = [&](const char* option, const char* trouble, auto&& able) {
-    if (able(chosen)) return;
-    throw CLI::ValidationError(option, "backend " + a.run.backend + " " + trouble + "; allowed: " +
-                                           CLI::detail::join(backend_names(able), ", "));
-  };
-  if (a.run.contact) {
-    require("--contact", "knows no contact", has_contact);
-  }
-  if (a.run.plant_inertia != 1.0) {
-    require("--plant-inertia", "has links without mass", has_gravity);
-  }
-}
-
-/// What is run, and how fast.
+/// What is run, and how.
 void describe_run(CLI::App& app, Command command, Arguments& a) {
   app.option_defaults()->group("Run");
   if (command == Command::replay) {
@@ -83,86 +40,15 @@ void describe_run(CLI::App& app, Command command, Arguments& a) {
   }
   app.add_option("scene", a.scene, "Scene file, or the name of one that comes with the program")
       ->capture_default_str();
-  app.add_option("--rate", a.rate_hz, "Tick rate [Hz] (default: the scene's)")
-      ->check(host::between(1.0, 1e5));
   if (command == Command::check) {
     app.add_flag("--schema", a.schema, "Print the JSON Schema of scene files, for editors");
-    return;
   }
-  app.add_option(
-         "--seconds", a.run.seconds,
-         "Scene time to run [s]; if not given, --view, --device and a site run until stopped")
-      ->capture_default_str()
-      ->each([&a](const std::string&) { a.has_seconds = true; })
-      ->check(host::between(0.0, 1e6));
-  if (command != Command::run) return;
-  app.add_flag(
-      "--fast", a.run.fast,
-      "As fast as it goes, not by the clock; bitwise repeatable. Wall-clock budgets of the "
-      "scene do not apply, counted ones do");
-}
-
-/// How the pairs are computed.
-void describe_coprocessor(CLI::App& app, Arguments& a) {
-  app.add_option("--threads", a.threads,
-                 "Coprocessor threads; 0: in the tick's own thread (default: the scene's)")
-      ->check(CLI::Range(0, 16));
-  app.add_option("--coprocessor", a.coprocessor,
-                 "Work of its threads, at least one: together, they share the pairs of a tick with "
-                 "its own thread; beside, they answer the last tick during this one, as in the "
-                 "paper (default: the scene's)")
-      ->check(CLI::IsMember({"together", "beside"}));
-  app.add_option("--budget", a.run.budget,
-                 "In place of the scene's budget: support pairs per tick, none, or i860 (the "
-                 "processor of 1993: 4 by 8 parts almost fit at 400 Hz)")
-      ->check(CLI::Validator(runs::budget_complaint, "UNITS, i860 or none"));
-  app.add_flag("--every-pair", a.run.every_pair,
-               "Evaluate pairs out of range, too, for comparison");
-}
-
-/// The simulated arm.
-void describe_arm(CLI::App& app, Arguments& a) {
-  app.option_defaults()->group("Arm");
-  app.add_option("--backend", a.run.backend,
-                 "Simulated arm: " + backends_in_words(has_contact) +
-                     " (dynamics, gravity, friction, stops), reference (the same without stops, by "
-                     "a higher order, slow) or ideal (free joints)")
-      ->capture_default_str()
-      ->check(CLI::IsMember(backend_names([](const auto&) { return true; })));
-  app.add_flag("--contact", a.run.contact,
-               "With " + backends_in_words(has_contact) +
-                   ": impassable obstacles are also solid in the simulation, beside their virtual "
-                   "force");
-  app.add_option("--plant-inertia", a.run.plant_inertia,
-                 "With " + backends_in_words(has_gravity) +
-                     ": inertia of the simulated arm relative to its model, at the same weight; "
-                     "tests the controller against errors of the model")
-      ->capture_default_str()
-      ->type_name("FACTOR")
-      ->check(host::between(least_inertia_factor, most_inertia_factor));
-  app.add_flag("!--no-prediction", a.run.prediction,
-               "Solve the network for the measured rates, without the mass of the arm, for "
-               "comparison; arms with light wrists become unstable");
-}
-
-void describe_walls(CLI::App& app, Arguments& a) {
-  app.option_defaults()->group("Walls");
-  app.add_option(
-         "--walls", a.run.hold,
-         "hard: no push enters a wall; soft: walls are springs (default: by the laws of the scene)")
-      ->check(CLI::IsMember({"hard", "soft"}));
-  app.add_flag("--tool-alone", a.run.tool_alone,
-               "Keep only the tools off the obstacles, not the links of the arms, as in the paper");
-  std::vector<std::string> names;
-  names.reserve(std::size(all_measures));
-  for (const Measure measure : all_measures) names.emplace_back(to_text(measure));
-  app.add_option("--measure", a.run.measure,
-                 "Measure of the depth of an overlap: the deepest common point, the reduction of "
-                 "the paper, or exact (default: the scene's)")
-      ->check(CLI::IsMember(names));
-  app.add_option("--levels", a.run.levels,
-                 "Steps of the reduction of shapes, if the measure needs it (default: the scene's)")
-      ->check(CLI::Range(1, ReductionOptions::most_levels));
+  static const std::map<Command, runs::Choosing> choosing{
+      {Command::check, runs::Choosing::check},
+      {Command::station, runs::Choosing::station},
+      {Command::site, runs::Choosing::site},
+      {Command::run, runs::Choosing::run}};
+  runs::describe(app, choosing.at(command), a.choice);
 }
 
 /// The live view, and a master in its place.
@@ -266,14 +152,17 @@ void describe_files(CLI::App& app, Command command, Arguments& a) {
       ->transform(CLI::Validator(take, ""));
   if (command == Command::station) return;
   app.add_option("--html", a.html, "Write the report as a page with curves to FILE");
-  app.add_option("--log", a.run.log,
+  app.add_option("--log", a.choice.run.log,
                  "Write every tick to FILE: a recording if its name ends in .mcap, else CSV");
 }
 
 /// What stands in scene files and behind options.
 std::string names_text() {
-  return "Scenes:" + scene_list() + "\n\nBack ends:\n  " +
-         CLI::detail::join(backend_names([](const auto&) { return true; }), ", ") +
+  std::string backends;
+  for (const runs::ArmBackend& backend : runs::arm_backends()) {
+    backends.append(backends.empty() ? "" : ", ").append(backend.name);
+  }
+  return "Scenes:" + scene_list() + "\n\nBack ends:\n  " + backends +
          "\n\nDevices (chosen phase by phase in the scene):\n"
          "  spaceball   six rates, scripted\n  torque_arm  force-reflecting lever, scripted\n"
          "  six_axes    six rates of a hand, with force feedback, scripted\n"
@@ -310,10 +199,11 @@ void settle(const CLI::App& app, Command command, Arguments& a) {
                                " belongs to: teleop site, teleop station, or "
                                "teleop run with --programs two");
   }
-  if (a.programs == "two" && a.run.fast) throw CLI::ExcludesError("--programs two", "--fast");
+  if (a.programs == "two" && a.choice.run.fast)
+    throw CLI::ExcludesError("--programs two", "--fast");
   const std::string insecure = runs::settle_secret(a.session);
   if (!insecure.empty()) throw CLI::ValidationError(insecure);
-  require_able(a);
+  runs::require_able(a.choice);
 }
 
 }  // namespace
@@ -332,13 +222,7 @@ void describe(CLI::App& app, Arguments& a) {
       added.footer("Exit status: 0 it is written, 1 it is not, 2 bad usage.");
       continue;
     }
-    const bool has_robot = command == Command::run || command == Command::site;
     describe_run(added, command, a);
-    if (has_robot) describe_coprocessor(added, a);
-    if (has_robot || command == Command::check) {
-      describe_arm(added, a);
-      describe_walls(added, a);
-    }
     if (command == Command::check) {
       added.footer("Exit status: 0 it is sound, 1 it is not, 2 bad usage.");
       continue;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <repel/host/command_line.hpp>
-#include <repel/runs/options/run_options.hpp>
+#include <repel/runs/options/run_choice.hpp>
 #include <repel/runs/options/session_options.hpp>
 
 namespace repel::teleop {
@@ -20,12 +20,8 @@ struct Arguments {
   std::string scene = "anderson_4x8";  ///< file or name
   std::string recording;               ///< to replay; empty: none
   std::string key_file;                ///< to write a key to
-  bool has_seconds = false;            ///< --seconds was given
-  std::string programs;     ///< "two" or "one", to run the sides in; empty: as the scene says
-  double rate_hz = 0.0;     ///< 0: the scene's own
-  int threads = -1;         ///< -1: the scene's own
-  std::string coprocessor;  ///< empty: the scene's own
-  runs::RunOptions run;
+  std::string programs;  ///< "two" or "one", to run the sides in; empty: as the scene says
+  runs::RunChoice choice;
   runs::SessionOptions session;
   std::string report;  ///< file for the JSON report; empty: none
   std::string html;    ///< file for the page; empty: none

@@ -82,10 +82,7 @@ bool apart_of(const Value& value, const Scene& scene) {
   return true;
 }
 
-}  // namespace
-
-Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& kinds) {
-  const Value document = Value::document(yaml, file);
+Scene scene_of(const Value& document, const std::string& file, const ModuleKinds& kinds) {
   const Map map(document, grammar::scene());
   Scene scene;
   scene.file = file;
@@ -121,8 +118,34 @@ Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& k
   return scene;
 }
 
-Scene load(const std::string& path, const ModuleKinds& kinds) {
-  return parse(text_of_file(path, "a scene file"), path, kinds);
+/// The error with the changes behind it: the line that it names is not as in the file.
+SetupError with_changes(const SetupError& error, const std::vector<Change>& changes) {
+  std::string what = error.what();
+  if (!error.file().empty()) what.erase(0, what.find(": ", error.file().size()) + 2);
+  what += " (with";
+  for (const Change& change : changes) {
+    what.append(&change == changes.data() ? " " : ", ").append(change.path).append(" set to '");
+    what.append(change.value).append("'");
+  }
+  return SetupError(what + ")", error.file(), error.line());
+}
+
+}  // namespace
+
+Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& kinds,
+            std::vector<Change> changes) {
+  try {
+    Scene scene = scene_of(Value::document(yaml, file, changes), file, kinds);
+    scene.changes = std::move(changes);
+    return scene;
+  } catch (const SetupError& error) {
+    if (changes.empty()) throw;
+    throw with_changes(error, changes);
+  }
+}
+
+Scene load(const std::string& path, const ModuleKinds& kinds, std::vector<Change> changes) {
+  return parse(text_of_file(path, "a scene file"), path, kinds, std::move(changes));
 }
 
 void is_built_for(EigenAlignmentHere /*alignment*/, VectorRegisterHere /*size*/) noexcept {}

@@ -10,6 +10,8 @@
 
 #include <repel/network/elements/robot_end.hpp>
 
+#include "changed.hpp"
+
 namespace repel::scene {
 namespace {
 
@@ -65,8 +67,9 @@ std::string existing(const Value& value, const std::string& file, std::filesyste
 
 }  // namespace
 
-Value Value::document(std::string_view yaml, const std::string& file) {
-  auto document = read_yaml(yaml, file);
+Value Value::document(std::string_view yaml, const std::string& file,
+                      std::span<const Change> changes) {
+  auto document = changed(read_yaml(yaml, file), changes);
   const Node& root = *document->root;
   return {root, "the scene", std::move(document)};
 }

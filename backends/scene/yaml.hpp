@@ -20,6 +20,7 @@
 #include <repel/base/setup_error.hpp>
 #include <repel/base/types.hpp>
 #include <repel/common/input_limits.hpp>
+#include <repel/scene/change.hpp>
 
 #include "key.hpp"
 #include "units.hpp"
@@ -34,8 +35,9 @@ class Value {
   Value(const Node& node, std::string name, std::shared_ptr<const Document> document)
       : node_(&node), line_(node.line), name_(std::move(name)), document_(std::move(document)) {}
 
-  /// The root of the only document in a text.
-  [[nodiscard]] static Value document(std::string_view yaml, const std::string& file);
+  /// The root of the only document in a text, with other values in it.
+  [[nodiscard]] static Value document(std::string_view yaml, const std::string& file,
+                                      std::span<const Change> changes = {});
 
   /// Line in the file, from 1.
   [[nodiscard]] int line() const noexcept { return line_; }

@@ -28,6 +28,7 @@ struct Document {
   std::string file;
   const Node* root = nullptr;
   std::deque<Node> nodes;
+  std::vector<std::shared_ptr<const Document>> others;  ///< that have nodes of this tree
 };
 
 /// Reads the only document of a text. Memory and time are linear in the length of the text, up to

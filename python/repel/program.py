@@ -60,7 +60,7 @@ def _refusal(text: str, status: int) -> SetupError:
 def run(scene: Any, *, seconds: float = 20.0, fast: bool = True, rate_hz: float | None = None,
         backend: str | None = None, log: str | os.PathLike[str] | None = None,
         on_tick: Callable[[list[Tick]], Hands] | None = None, every: int = 1, stop: Any = None,
-        arguments: Sequence[str] = ()) -> dict[str, Any]:
+        hands: Sequence[Any] = (), arguments: Sequence[str] = ()) -> dict[str, Any]:
     """Runs a scene and returns its report, the object that `teleop run --report` writes.
 
     scene: a Scene, the path of a scene file, or the name of one that comes with the package.
@@ -70,23 +70,35 @@ def run(scene: Any, *, seconds: float = 20.0, fast: bool = True, rate_hz: float 
     all arms. It may return what operators do until it is called again, in place of the script: a
     Command of the first arm, or a list with a Command or None for each arm; None: the script goes
     on. What it raises ends the run and is raised here. stop: an Event of threading; once it is set the
-    forces fade and the run ends. arguments: further ones of `teleop run --help`; with them, and in
-    a build without runs, the program runs as a child, without on_tick and stop.
+    forces fade and the run ends. hands: by arm, what its operator does in place of the script, an
+    array (rows, 7) or (rows, 11) with the columns of `teleop run --hand` (docs/recording.md): [s],
+    three [m/s], three [rad/s], and of a lever [rad/s] and its direction. arguments: further ones of
+    `teleop run --help`. With one beyond its groups Run, Arm and Walls, and in a build without runs,
+    the program runs as a child, without on_tick, stop and hands.
 
     The report has the key `exit_status`: 0, or 3 to 5 where docs/recording.md says what happened.
     Raises SetupError if the scene cannot be run.
     """
-    has_runs = hasattr(_repel, "run_scene")
-    if arguments or not has_runs:
-        if on_tick is not None or stop is not None:
-            raise SetupError("on_tick and stop go without arguments" if has_runs else
-                             f"on_tick and stop are not in this build: {how_to_have('teleop')}")
+    if not _is_inside(arguments):
+        if on_tick is not None or stop is not None or len(hands) > 0:
+            raise SetupError(
+                "on_tick, stop and hands go without arguments of views, links and files"
+                if hasattr(_repel, "run_scene") else
+                f"on_tick, stop and hands are not in this build: {how_to_have('teleop')}")
         return _run_child(scene, seconds, fast, rate_hz, backend, log, arguments)
     text, status = _repel.run_scene(
         path_of(getattr(scene, "file", scene)), seconds=seconds, fast=fast, rate_hz=rate_hz,
         backend=backend, log="" if log is None else os.fspath(log), on_tick=on_tick,
-        every=every, stop=stop)
+        every=every, stop=stop, arguments=list(arguments), hands=list(hands))
     return {**json.loads(text), "exit_status": status}
+
+
+def _is_inside(arguments: Sequence[str]) -> bool:
+    """Whether a run with these words needs no program as a child."""
+    if not hasattr(_repel, "run_scene"):
+        return False
+    known = _repel.run_words()
+    return all(word.partition("=")[0] in known for word in arguments if word.startswith("--"))
 
 
 def _run_child(scene: Any, seconds: float, fast: bool, rate_hz: float | None, backend: str | None,

@@ -17,6 +17,8 @@
 #include <nanobind/stl/vector.h>
 
 #include <repel/runs/engine/session.hpp>
+#include <repel/runs/operator/hand_track.hpp>
+#include <repel/runs/options/run_choice.hpp>
 #include <repel/runs/report/report.hpp>
 #include <repel/scene/scene.hpp>
 
@@ -88,14 +90,32 @@ class Watcher {
   std::vector<std::shared_ptr<const TickNames>> names_;
 };
 
+/// @param table [s, m/s, rad/s, ...] (rows, 7) or (rows, 11), the columns of read_hand_track
+runs::HandTrack track_of(nb::handle table) {
+  const std::vector<std::vector<double>> rows = nb::cast<std::vector<std::vector<double>>>(table);
+  std::vector<runs::HandRow> track;
+  track.reserve(rows.size());
+  for (const std::vector<double>& x : rows) {
+    if (x.size() != 7 && x.size() != 11) {
+      throw SetupError("hand: a row of " + std::to_string(x.size()) +
+                       " numbers; allowed: 7 or 11, see repel.run");
+    }
+    track.push_back(runs::hand_row_of(x));
+  }
+  return runs::HandTrack(std::move(track));
+}
+
 nb::tuple run_scene(const std::string& file, double seconds, bool fast,
                     std::optional<double> rate_hz, const std::optional<std::string>& backend,
-                    const std::string& log, nb::object on_tick, int every, nb::object stop) {
-  const scene::Scene scene = scene::load(file);
-  runs::RunOptions options = runs::options_of(scene);
+                    const std::string& log, nb::object on_tick, int every, nb::object stop,
+                    const std::vector<std::string>& arguments, const nb::list& hands) {
+  runs::RunChoice choice = runs::choice_of(arguments);
+  const scene::Scene scene = runs::scene_of(choice, file);
+  choice.rate_hz = rate_hz.value_or(choice.rate_hz);
+  runs::RunOptions options = runs::options_of(choice, scene);
   options.seconds = checked("seconds", seconds, 0.0, 1e6, "s");
   options.fast = fast;
-  options.rate_hz = checked("rate_hz", rate_hz.value_or(options.rate_hz), 1.0, 1e5, "Hz");
+  checked("rate_hz", options.rate_hz, 1.0, 1e5, "Hz");
   options.backend = backend.value_or(options.backend);
   options.log = log;
   checked("every", every, 1.0, 1e9, "ticks");
@@ -105,6 +125,10 @@ nb::tuple run_scene(const std::string& file, double seconds, bool fast,
     watcher.look(cell, records);
   };
   session.hands = watcher.hands;
+  for (const std::string& table : choice.hands) {
+    session.tracks.push_back(runs::read_hand_track(table));
+  }
+  for (const nb::handle table : hands) session.tracks.push_back(track_of(table));
   runs::RunResult result;
   {
     const nb::gil_scoped_release others_go_on;
@@ -122,12 +146,14 @@ nb::tuple run_scene(const std::string& file, double seconds, bool fast,
 void bind_runs(nb::module_& m) {
   m.def("run_scene", &run_scene, nb::arg("file"), nb::kw_only(), nb::arg("seconds"),
         nb::arg("fast"), nb::arg("rate_hz").none(), nb::arg("backend").none(), nb::arg("log"),
-        nb::arg("on_tick").none(), nb::arg("every"), nb::arg("stop").none(),
-        nb::sig(
-            "def run_scene(file: str, *, seconds: float, fast: bool, rate_hz: float | None, "
-            "backend: str | None, log: str, on_tick: typing.Any, every: int, stop: typing.Any) -> "
-            "tuple[str, int]"),
+        nb::arg("on_tick").none(), nb::arg("every"), nb::arg("stop").none(), nb::arg("arguments"),
+        nb::arg("hands"),
+        nb::sig("def run_scene(file: str, *, seconds: float, fast: bool, rate_hz: float | None, "
+                "backend: str | None, log: str, on_tick: typing.Any, every: int, stop: typing.Any, "
+                "arguments: list[str], hands: list[typing.Any]) -> tuple[str, int]"),
         "See repel.run: the report as JSON, and the exit status of teleop.");
+  m.def("run_words", &runs::names_of_choice,
+        "The options of teleop run that `run_scene` takes as arguments.");
 }
 
 }  // namespace repel::python

@@ -21,6 +21,7 @@
 #include <repel/network/operator.hpp>
 #include <repel/reduction/shape.hpp>
 #include <repel/scene/camera.hpp>
+#include <repel/scene/change.hpp>
 #include <repel/scene/module_kinds.hpp>
 #include <repel/scene/network.hpp>
 #include <repel/scene/part_list.hpp>
@@ -177,6 +178,7 @@ struct OtherArm : ArmSetup {
 struct Scene : ArmSetup {
   std::string name;                                ///< of the file, without folder and extension
   std::string file;                                ///< path of the file
+  std::vector<Change> changes;                     ///< made to what the file says
   double rate_hz = 400.0;                          ///< [Hz] of the tick
   double tool_speed = 0.25;                        ///< [m/s] speed limit of a tool
   StartInside start_inside = StartInside::refuse;  ///< what if an arm starts in an obstacle
@@ -205,13 +207,15 @@ struct Scene : ArmSetup {
 
 /// Reads the scene file at `path`.
 /// @param kinds of module that the file can name
+/// @param changes other values than those of the file
 /// @throws SetupError naming file, line, value and what is allowed, for anything that does not
 ///   conform exactly to scenes/README.md
-[[nodiscard]] Scene load(const std::string& path, const ModuleKinds& kinds = {});
+[[nodiscard]] Scene load(const std::string& path, const ModuleKinds& kinds = {},
+                         std::vector<Change> changes = {});
 
 /// The same for text; `file` is the name used in errors, and paths are relative to it.
 [[nodiscard]] Scene parse(std::string_view yaml, const std::string& file,
-                          const ModuleKinds& kinds = {});
+                          const ModuleKinds& kinds = {}, std::vector<Change> changes = {});
 
 /// A JSON Schema (draft 7) of scene files, from which editors complete keys and find mistakes. The
 /// readers are stricter: they also see what two keys together must be. Of modules it has those of

@@ -288,6 +288,7 @@ std::vector<OperatorInput> make_operators(const PreparedRun& prepared,
   for (std::size_t i = 0; i < prepared.cell.arms(); ++i) {
     operators.emplace_back(prepared.scene.arm_setup(i).script, i == 0 ? attached.controls : nullptr,
                            i == 0 ? attached.device : nullptr);
+    if (i < attached.tracks.size()) operators.back().follow(attached.tracks[i]);
     if (i < attached.hands.size()) operators.back().obey(attached.hands[i]);
   }
   return operators;

@@ -14,6 +14,7 @@
 #include <repel/runs/engine/progress_thread.hpp>
 #include <repel/runs/operator/controls.hpp>
 #include <repel/runs/operator/device.hpp>
+#include <repel/runs/operator/hand_track.hpp>
 #include <repel/runs/records/dated_shapes.hpp>
 #include <repel/runs/records/recording.hpp>
 #include <repel/runs/report/results.hpp>
@@ -33,6 +34,7 @@ struct Attachments {
   /// SessionOptions::on_tick
   std::function<void(const Cell&, std::span<const TickRecord* const>)> on_tick{};
   std::span<const std::optional<network::Command>> hands{};  ///< SessionOptions::hands
+  std::span<const HandTrack> tracks{};                       ///< SessionOptions::tracks
 };
 
 /// Runs a prepared scene, once. `show` is called from a separate thread, a few times a second. When

@@ -105,6 +105,13 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
   Attachments attached{nullptr, nullptr, device.link.get(), recording, nullptr, &at_once};
   attached.on_tick = session.on_tick;
   attached.hands = session.hands;
+  if (session.tracks.size() > prepared->cell.arms()) {
+    throw SetupError(std::to_string(session.tracks.size()) + " hands for " +
+                         std::to_string(prepared->cell.arms()) +
+                         " arms; allowed: at most one for each",
+                     scene.file);
+  }
+  attached.tracks = session.tracks;
   if (remote) {
     remote->open(session.link, scene);
     attached.remote = &remote->link;

@@ -13,6 +13,7 @@
 #include <repel/network/operator.hpp>
 #include <repel/runs/operator/controls.hpp>
 #include <repel/runs/operator/device.hpp>
+#include <repel/runs/operator/hand_track.hpp>
 #include <repel/visual/page_command.hpp>
 
 #ifdef REPEL_RUNS_DEVICES
@@ -45,6 +46,9 @@ class OperatorInput {
   /// From now on replays the command of `record`, which must stay valid and is read at each tick.
   void follow(const TickRecord& record) noexcept { recorded_ = &record; }
 
+  /// From now on does in place of the script what the track says, which must stay valid.
+  void follow(const HandTrack& track) noexcept { track_ = &track; }
+
   /// From now on the command there, while there is one, counts in place of all others. It is read
   /// at each tick, and must stay valid.
   void obey(const std::optional<network::Command>& told) noexcept { told_ = &told; }
@@ -67,7 +71,14 @@ class OperatorInput {
       const bool listens = hear(period);
       if (device_ != nullptr) feel(period, listens);
       if (listens) listen(R_WT);
-      if (driver_ == Driver::script && !awaits_) command_ = script_.step(R_WT, period);
+      if (driver_ == Driver::script && !awaits_) {
+        if (track_ == nullptr) {
+          command_ = script_.step(R_WT, period);
+        } else {
+          track_->read(time_, command_);
+          time_ += period;
+        }
+      }
     }
     command_.phase = static_cast<std::int32_t>(phase());
     return command_;
@@ -75,7 +86,8 @@ class OperatorInput {
 
   [[nodiscard]] std::size_t phase() const noexcept {
     if (recorded_ != nullptr) return static_cast<std::size_t>(recorded_->phase);
-    return driver_ == Driver::script ? script_.phase() : script_.script().size();
+    const bool is_scripted = driver_ == Driver::script && track_ == nullptr;
+    return is_scripted ? script_.phase() : script_.script().size();
   }
 
  private:
@@ -130,6 +142,8 @@ class OperatorInput {
   devices::HandFollower follower_;
 #endif
   const TickRecord* recorded_ = nullptr;
+  const HandTrack* track_ = nullptr;
+  double time_ = 0.0;  ///< [s] since the track began
   const std::optional<network::Command>* told_ = nullptr;
   Driver driver_ = Driver::script;
   network::Command command_;

@@ -155,12 +155,16 @@ std::unique_ptr<link::Transport> open_place(const LinkChoice& choice, std::uint6
 #endif
 }
 
-/// FNV-1a of the text of the scene: to tell scenes apart, not to keep anybody out.
+/// FNV-1a of the text of the scene and its changes: to tell scenes apart, not to keep anybody out.
 std::uint64_t agreement_of(const scene::Scene& scene) {
   std::uint64_t hash = 0xcbf29ce484222325U;
+  const auto add = [&hash](char c) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  };
   std::ifstream file(scene.file, std::ios::binary);
-  for (std::istreambuf_iterator<char> it(file), end; it != end; ++it) {
-    hash = (hash ^ static_cast<unsigned char>(*it)) * 0x100000001b3U;
+  std::for_each(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>(), add);
+  for (const scene::Change& change : scene.changes) {
+    for (const char c : change.path + "=" + change.value + "\n") add(c);
   }
   return hash;
 }

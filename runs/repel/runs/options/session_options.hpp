@@ -7,9 +7,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <repel/cell/cell.hpp>
 #include <repel/network/operator.hpp>
+#include <repel/runs/operator/hand_track.hpp>
 #include <repel/runs/options/link_choice.hpp>
 
 namespace repel::runs {
@@ -28,6 +30,8 @@ struct SessionOptions {
   bool view_only = false;                 ///< pages may only watch
   bool page_drives = false;               ///< pages may override the device
   LinkChoice link;                        ///< to the other side of the scene
+  /// By arm, what its operator does in place of the script; empty, or the last ones left out: that.
+  std::vector<HandTrack> tracks{};
   /// Called after each tick, outside of its measured time, with the records of all arms; null: not.
   std::function<void(const Cell&, std::span<const TickRecord* const>)> on_tick{};
   /// For each arm the command of its operator in the next tick, in place of the script; without a

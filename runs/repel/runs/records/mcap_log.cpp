@@ -255,22 +255,28 @@ class McapLog final : public TickLog {
   static std::map<std::string, std::string> metadata_of(const scene::Scene& scene,
                                                         const RunOptions& options) {
     const auto word = [](bool yes) { return std::string(yes ? "yes" : "no"); };
-    return {{"version", "1"},
-            {"scene", scene.file},
-            {"rate_hz", to_text(options.rate_hz)},
-            {"backend", options.backend},
-            {"threads", std::to_string(options.threads)},
-            {"coprocessor", std::string(to_text(options.coprocessor))},
-            {"budget", options.budget},
-            {"measure", options.measure.empty() ? to_text(scene.measure) : options.measure},
-            {"levels", std::to_string(options.levels > 0 ? options.levels : scene.levels)},
-            {"by_the_clock", word(!options.fast)},
-            {"every_pair", word(options.every_pair)},
-            {"tool_alone", word(options.tool_alone)},
-            {"hold", options.hold},
-            {"prediction", word(options.prediction)},
-            {"contact", word(options.contact)},
-            {"plant_inertia", to_text(options.plant_inertia)}};
+    std::map<std::string, std::string> words{
+        {"version", "1"},
+        {"scene", scene.file},
+        {"rate_hz", to_text(options.rate_hz)},
+        {"backend", options.backend},
+        {"threads", std::to_string(options.threads)},
+        {"coprocessor", std::string(to_text(options.coprocessor))},
+        {"budget", options.budget},
+        {"measure", options.measure.empty() ? to_text(scene.measure) : options.measure},
+        {"levels", std::to_string(options.levels > 0 ? options.levels : scene.levels)},
+        {"by_the_clock", word(!options.fast)},
+        {"every_pair", word(options.every_pair)},
+        {"tool_alone", word(options.tool_alone)},
+        {"hold", options.hold},
+        {"prediction", word(options.prediction)},
+        {"contact", word(options.contact)},
+        {"plant_inertia", to_text(options.plant_inertia)}};
+    for (std::size_t i = 0; i < scene.changes.size(); ++i) {
+      const scene::Change& change = scene.changes[i];
+      words.emplace(mcap::change_word(i), change.path + "=" + change.value);
+    }
+    return words;
   }
 
   void attach(const std::string& name, const char* type, const std::string& path) {

@@ -22,6 +22,12 @@ inline constexpr const char* run_metadata = "repel run";
 inline constexpr const char* end_metadata = "repel end";
 inline constexpr const char* scene_attachment = "scene.yaml";
 
+/// Of a change of the scene file, in the metadata of a run.
+inline std::string change_word(std::size_t change) {
+  std::string name = "set ";
+  return name.append(std::to_string(change));
+}
+
 /// The robot of an arm, in the order of Scene::arm_setup().
 inline std::string robot_attachment(std::size_t arm) {
   std::string name = "robot ";

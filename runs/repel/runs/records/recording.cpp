@@ -241,7 +241,13 @@ void require_measure(const std::string& name) {
   throw SetupError("measure of the recording is '" + name + "'; allowed: " + allowed);
 }
 
-void read_options(const McapReader& reader, Recording& recording, std::string& scene) {
+/// What the metadata of a recording says of its scene.
+struct RecordedScene {
+  std::string file;
+  std::vector<scene::Change> changes;
+};
+
+void read_options(const McapReader& reader, Recording& recording, RecordedScene& scene) {
   for (const record::McapMetadata& each : reader.metadata()) {
     if (each.name != mcap::run_metadata) continue;
     const auto word = [&](const char* name) {
@@ -253,7 +259,13 @@ void read_options(const McapReader& reader, Recording& recording, std::string& s
       throw SetupError("a recording of another version: " + word("version") + "; allowed: 1",
                        recording.file);
     }
-    scene = word("scene");
+    scene.file = word("scene");
+    for (std::size_t i = 0; each.entries.contains(mcap::change_word(i)); ++i) {
+      const std::string change = word(mcap::change_word(i).c_str());
+      const std::size_t equals = std::min(change.find('='), change.size());
+      scene.changes.push_back(
+          {change.substr(0, equals), change.substr(std::min(equals + 1, change.size()))});
+    }
     options.rate_hz = std::strtod(word("rate_hz").c_str(), nullptr);
     options.threads =
         static_cast<int>(std::clamp(std::strtol(word("threads").c_str(), nullptr, 10), -1L, 1000L));
@@ -305,13 +317,14 @@ void require_same(const McapReader& reader, const std::string& name, const std::
   require_same(attachment(reader, name, recording), name, path, what, recording);
 }
 
-void read_scene(const McapReader& reader, const std::string& recorded,
+void read_scene(const McapReader& reader, RecordedScene recorded,
                 const std::function<std::string(const std::string&)>& find, Recording& recording) {
   namespace fs = std::filesystem;
   std::error_code error;
   const std::string path =
-      fs::exists(recorded, error) ? recorded : find(fs::path(recorded).stem().string());
-  recording.scene = scene::parse(attachment(reader, mcap::scene_attachment, recording.file), path);
+      fs::exists(recorded.file, error) ? recorded.file : find(fs::path(recorded.file).stem());
+  recording.scene = scene::parse(attachment(reader, mcap::scene_attachment, recording.file), path,
+                                 {}, std::move(recorded.changes));
   const scene::Scene& scene = recording.scene;
   for (std::size_t i = 0; i <= scene.partners.size(); ++i) {
     require_same(reader, mcap::robot_attachment(i), scene.arm_setup(i).robot.urdf, "the robot is",
@@ -368,9 +381,9 @@ Recording load_recording(const std::string& path,
   McapReader reader(path);
   Recording recording;
   recording.file = path;
-  std::string scene;
+  RecordedScene scene;
   read_options(reader, recording, scene);
-  read_scene(reader, scene, find, recording);
+  read_scene(reader, std::move(scene), find, recording);
   Ticks ticks(recording, 1 + recording.scene.partners.size());
   record::McapMessage message;
   while (reader.next(message)) {

@@ -1,0 +1,351 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A study: the scenes of a cell, what varies in them, what is measured and what must hold."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import math
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from .. import _repel
+from .._errors import SetupError, how_to_have
+from .._scenes import path_of
+from ..program import program, run
+from ..recording import read_recording
+from .entry import Entry, did_you_mean, number_and_unit, read
+from .hands import Hand, hand_of, write_table
+from .measures import Bound, Measure, bounds_of, measures_of, unknown
+from .quantities import SAMPLINGS, Quantity, draws, quantity_of, shares
+
+_KEYS = ("name", "scenes", "runs", "seed", "seconds", "sampling", "with", "vary", "hand", "faults",
+         "measure", "hold")
+#: Options of a run by the name that a study has for them; flags by the word that sets them.
+_OPTIONS = {"plant_inertia": "plant-inertia", "backend": "backend", "hold": "walls",
+            "walls": "walls", "measure": "measure", "levels": "levels", "threads": "threads",
+            "coprocessor": "coprocessor", "budget": "budget"}
+_FLAGS = {"contact": ("yes", "--contact"), "tool_alone": ("yes", "--tool-alone"),
+          "every_pair": ("yes", "--every-pair"), "prediction": ("no", "--no-prediction")}
+_SHORT = {"drive_delay": "robot.drive_delay"}
+_FILES = ("robot.urdf", "robot.mjcf", "robot.srdf")
+_FAULT, _FAULT_TIME = "fault", "fault_s"
+_OWN = ("index", "scene", "margin", "refused", "held")
+
+Values = dict[str, float | str]
+Numbers = Sequence[float]
+
+
+class Study:
+    """A study that has been read and checked. A run of it is a function of the study and an index
+    alone.
+
+    name, file, text: of its file. runs: how many. seed: of all that is drawn. identity: a digest of
+    what decides the rows. versions: of what decides their bits. columns: name and type of the
+    columns of a row.
+    """
+
+    def __init__(self, file: str, text: str, runs: int | None = None):
+        self.file, self.text = file, text
+        root = read(text, file)
+        keys = root.entries(_KEYS)
+        for required in ("scenes", "hold"):
+            if required not in keys:
+                root.fail(f"no key '{required}'; required: scenes, hold")
+        folder = os.path.dirname(os.path.abspath(file))
+        name = os.path.splitext(os.path.basename(file))[0]
+        self.name = keys["name"].text if "name" in keys else name
+        self.seed = keys["seed"].integer(0, 2**53) if "seed" in keys else 1
+        self.seconds = keys["seconds"].number("s", 1e-3, 1e6) if "seconds" in keys else 20.0
+        self.sampling = keys["sampling"].word_of(SAMPLINGS) if "sampling" in keys else "random"
+        self.scenes = tuple(_scene_of(each, folder) for each in keys["scenes"])
+        self._fixed = tuple((each.name, each.text) for each in
+                            keys["with"].entries().values()) if "with" in keys else ()
+        drawn = [quantity_of(each) for each in keys["vary"].entries().values()] \
+            if "vary" in keys else []
+        self._hand: Hand = hand_of(keys.get("hand"), folder)
+        drawn += _faults_of(keys["faults"], self.seconds) if "faults" in keys else []
+        self._drawn = tuple(_with_files(each, folder) for each in drawn)
+        self.bounds: tuple[Bound, ...] = tuple(bounds_of(keys["hold"]))
+        self._measures = self._all_measures(measures_of(keys.get("measure"), folder))
+        self.runs = self._runs_of(keys.get("runs"), runs)
+        self._check(root, keys)
+        self.identity = self._digest()
+        self.versions = self.versions_here()
+
+    @staticmethod
+    def versions_here() -> dict[str, str]:
+        """Of what decides the bits of a row, in this process."""
+        return {"repel": _version(), "numpy": np.__version__}
+
+    @property
+    def quantities(self) -> tuple[Quantity, ...]:
+        """What a search may change: the scene, if there are several, and what varies."""
+        scenes = [each for each, _ in self.scenes]
+        first = [Quantity("scene", kind="choice", choices=tuple(scenes), is_word=True)]
+        return (*(first if len(scenes) > 1 else []), *self._drawn)
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        return tuple(each.name for each in self._measures)
+
+    @property
+    def columns(self) -> tuple[tuple[str, str], ...]:
+        def kind(is_word: bool) -> str:
+            return "string" if is_word else "float64"
+        return (("index", "int64"), ("scene", "string"),
+                *((each.name, kind(each.is_word)) for each in self._drawn),
+                *((each.name, kind(each.is_word)) for each in self._measures),
+                ("margin", "float64"), ("refused", "string"), ("held", "bool"))
+
+    def values(self, index: int) -> Values:
+        """What varied in a run. Grids go round, the scenes the fastest; all else is drawn."""
+        values: Values = {"scene": self.scenes[index % len(self.scenes)][0]}
+        index_of_grid = index // len(self.scenes)
+        drawn = [each.name for each in self._drawn if each.kind != "grid"]
+        at = dict(zip(drawn, shares(self.sampling, self.seed, self.runs, drawn, index)))
+        for each in self._drawn:
+            if each.kind == "grid":
+                values[each.name] = each.choices[index_of_grid % len(each.choices)]
+                index_of_grid //= len(each.choices)
+            else:
+                values[each.name] = each.at(at[each.name])
+        return values
+
+    def point(self, index: int) -> tuple[Values, list[float] | None]:
+        """Values and hand of a run to begin a search with: any index, beyond the runs as well."""
+        hand = 2 * draws(self.seed, "searched hand", index, self.hand_size()) - 1
+        return self.values(index), [float(x) for x in hand] or None
+
+    def hand_size(self) -> int:
+        """How many numbers from -1 to 1 the hand of a search has; 0: it is not drawn."""
+        return self._hand.random.size(self.seconds) if self._hand.random else 0
+
+    def row(self, index: int) -> dict[str, Any]:
+        """Makes a run."""
+        return {**self._made(self.values(index), self._table(index, None)), "index": index}
+
+    def row_of(self, values: Mapping[str, float | str],
+               hand: Numbers | None = None) -> dict[str, Any]:
+        """Makes a run with these values, and a hand of hand_size() numbers. A value that is left
+        out is that of the scene, a hand that is left out the script."""
+        return {**self._made(dict(values), self._table(None, hand)), "index": -1}
+
+    def command(self, which: int | Mapping[str, float | str], folder: str,
+                hand: Numbers | None = None) -> list[str]:
+        """The command line that makes a run again, of an index or of values. Writes the table of
+        the hand, if there is one, to `folder`."""
+        index = which if isinstance(which, int) else None
+        values = self.values(which) if isinstance(which, int) else dict(which)
+        table = self._table(index, hand)
+        words = [program(), "run", path_of(self._scene_path(values)), "--fast",
+                 f"--seconds={self.seconds!r}", *self._words(values)]
+        if len(table) > 0:
+            os.makedirs(folder, exist_ok=True)
+            file = os.path.join(folder, "hand.csv" if index is None else f"hand_{index}.csv")
+            write_table(table, file)
+            words.append(f"--hand={file}")
+        return words
+
+    def _table(self, index: int | None, numbers: Numbers | None) -> Any:
+        """The rows of the hand; none: the script."""
+        drawn = self._hand.random
+        if drawn is None or (index is None and numbers is None):
+            return self._hand.table
+        if index is not None:
+            knots = drawn.drawn(self.seed, index, self.seconds)
+        else:
+            knots = drawn.searched(list(numbers or ()), self.seconds)
+        return drawn.table(knots, self.seconds)
+
+    def _scene_path(self, values: Mapping[str, float | str]) -> str:
+        return dict(self.scenes)[str(values.get("scene", self.scenes[0][0]))]
+
+    def _words(self, values: Mapping[str, float | str]) -> list[str]:
+        """The options of a run with these values."""
+        words = [word for name, text in self._fixed for word in _option(name, text)]
+        for each in self._drawn:
+            if each.name in values and each.name not in (_FAULT, _FAULT_TIME):
+                words += [word for name, text in each.settings(values[each.name])
+                          for word in _option(name, text)]
+        fault = values.get(_FAULT, "none")
+        if fault != "none":
+            words.append(f"--fault={fault}@{values[_FAULT_TIME]!r}")
+        return words
+
+    def _made(self, values: Values, table: Any, seconds: float | None = None) -> dict[str, Any]:
+        row: dict[str, Any] = dict.fromkeys((name for name, _ in self.columns), math.nan)
+        row.update({each.name: "" for each in self._drawn if each.is_word})
+        row.update(values)
+        row["scene"] = values.get("scene", self.scenes[0][0])
+        try:
+            measured = self._measured(values, table, seconds or self.seconds)
+        except SetupError as error:
+            row.update({each.name: "" for each in self._measures if each.is_word})
+            return {**row, "refused": str(error), "held": False}
+        row.update(measured)
+        margins = [bound.margin(row) for bound in self.bounds]
+        least = math.nan if any(map(math.isnan, margins)) else min(margins)
+        return {**row, "margin": least, "refused": "", "held": least > 0.0}
+
+    def _measured(self, values: Values, table: Any, seconds: float) -> dict[str, Any]:
+        hands = [table] if len(table) > 0 else []
+        scene, words = self._scene_path(values), self._words(values)
+        if not any(each.needs_log for each in self._measures):
+            report = run(scene, seconds=seconds, hands=hands, arguments=words)
+            return {each.name: each.of(report, None) for each in self._measures}
+        with tempfile.TemporaryDirectory(dir=_quick_folder()) as folder:
+            file = os.path.join(folder, "log.csv")
+            report = run(scene, seconds=seconds, hands=hands, arguments=words, log=file)
+            log = read_recording(file)
+        return {each.name: each.of(report, log) for each in self._measures}
+
+    def _all_measures(self, named: list[Measure]) -> tuple[Measure, ...]:
+        """Those that are named, and those of the bounds."""
+        found = {each.name: each for each in named}
+        for bound in self.bounds:
+            found.setdefault(bound.measure, Measure(bound.measure))
+        return tuple(found.values())
+
+    def _runs_of(self, entry: Entry | None, runs: int | None) -> int:
+        if runs is not None:
+            return runs
+        if entry is not None:
+            return entry.integer(1, 10**9)
+        return len(self.scenes) * math.prod(
+            len(each.choices) for each in self._drawn if each.kind == "grid")
+
+    def _check(self, root: Entry, keys: Mapping[str, Entry]) -> None:
+        """Makes a short run of each scene, and one with every choice: what is refused is refused
+        now, and what is measured is known.
+
+        A value that is drawn may still be refused in its run: the row says so.
+        """
+        if not hasattr(_repel, "run_scene"):
+            raise SetupError(f"this build runs no scenes: {how_to_have('teleop')}")
+        for each in self._drawn:
+            if each.name in _OWN or each.name in self.measures:
+                root.fail(f"'{each.name}' cannot vary; it is another column of the table")
+        reports = [run(scene, seconds=0.0, arguments=self._words({})) for _, scene in self.scenes]
+        for report in reports:
+            self._require_measured(report, keys)
+        trials: list[Values] = [{each.name: each.at(0.5)} for each in self._drawn
+                                if each.name not in (_FAULT, _FAULT_TIME)]
+        trials += [{each.name: choice} for each in self._drawn for choice in each.choices
+                   if each.name != _FAULT and len(each.choices) <= 100]
+        for trial in trials:
+            self._try(trial, keys)
+
+    def _try(self, values: Values, keys: Mapping[str, Entry]) -> None:
+        for name, scene in self.scenes:
+            try:
+                run(scene, seconds=0.0, arguments=self._words(values))
+            except SetupError as error:
+                what = next(iter(values))
+                entry = keys["vary"].entries()[what]
+                entry.fail(f"{what} of {name} set to {values[what]}: {error}")
+
+    def _require_measured(self, report: Mapping[str, Any], keys: Mapping[str, Entry]) -> None:
+        checked = []
+        for each in self._measures:
+            try:
+                is_word = not each.needs_log and isinstance(each.of(report, None), str)
+            except KeyError as error:
+                where = keys["hold"].entries().get(each.name) or keys.get("measure", keys["hold"])
+                raise unknown(where, each.name, report) from error
+            checked.append(dataclasses.replace(each, is_word=is_word))
+        self._measures = tuple(checked)
+
+    def _digest(self) -> str:
+        digest = hashlib.blake2b(digest_size=16)
+        files = [path_of(scene) for _, scene in self.scenes]
+        files += [_repel.load_scene(file).robot for file in list(files)]
+        parts = [self.text, str(self.runs), _version(), repr(self._hand.table)]
+        parts += [each.source for each in self._measures]
+        for file in files:
+            with open(file, "rb") as contents:
+                parts.append(hashlib.blake2b(contents.read()).hexdigest())
+        for part in parts:
+            digest.update(hashlib.blake2b(part.encode()).digest())
+        return digest.hexdigest()
+
+
+def load_study(path: str | os.PathLike[str], *, runs: int | None = None) -> Study:
+    """Reads a study (docs/qualify.md). runs: in place of its own.
+
+    Raises SetupError naming file, line, value and what is allowed; a run of no length is made of
+    every scene and choice, so that paths and measures are known to be right.
+    """
+    file = os.fspath(path)
+    try:
+        with open(file, encoding="utf-8") as text:
+            return Study(file, text.read(), runs)
+    except (OSError, UnicodeDecodeError) as error:
+        raise SetupError(f"{file}: cannot be read: {error}", file) from error
+
+
+def _version() -> str:
+    from .. import __version__
+    return __version__
+
+
+def _quick_folder() -> str | None:
+    return "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
+
+
+def _scene_of(entry: Entry, folder: str) -> tuple[str, str]:
+    """The name that it has in the table, and where it is."""
+    beside = os.path.join(folder, entry.text)
+    path = beside if os.path.isfile(beside) else entry.text
+    try:
+        path_of(path)
+    except SetupError as error:
+        entry.fail(str(error))
+    return os.path.splitext(os.path.basename(path))[0], path
+
+
+def _option(name: str, text: str) -> list[str]:
+    """What the command line of a run says for a value."""
+    if name in _OPTIONS:
+        return [f"--{_OPTIONS[name]}={text}"]
+    if name in _FLAGS:
+        word, flag = _FLAGS[name]
+        return [flag] if text == word else []
+    if name == "rate":
+        found = number_and_unit(text)
+        factor = {"": 1.0, "Hz": 1.0, "kHz": 1e3}.get(found[1]) if found else None
+        if found and factor:
+            return [f"--rate={found[0] * factor!r}"]
+    return [f"--set={_SHORT.get(name, name)}={text}"]
+
+
+def _with_files(quantity: Quantity, folder: str) -> Quantity:
+    """Robot files beside the study by their whole path: a scene would look beside itself."""
+    if quantity.name not in _FILES:
+        return quantity
+    paths = tuple(os.path.join(folder, str(each)) for each in quantity.choices)
+    choices = tuple(path if os.path.isfile(path) else each
+                    for path, each in zip(paths, quantity.choices))
+    return dataclasses.replace(quantity, choices=choices)
+
+
+def _faults_of(entry: Entry, seconds: float) -> list[Quantity]:
+    """What `faults` says: {names: [...], at: [from, to]} or {kinds: [...], at: ...}."""
+    keys = entry.entries(("names", "kinds", "at"))
+    known = dict(_repel.fault_names())
+    chosen = [each.word_of(["none", *known]) for each in keys.get("names", ())]
+    kinds = [each.word_of(sorted(set(known.values()))) for each in keys.get("kinds", ())]
+    chosen += [name for name, kind in known.items() if kind in kinds]
+    if not chosen:
+        entry.fail("faults without names or kinds; allowed: names of `teleop list --faults`, and "
+                   f"kinds: {did_you_mean('', sorted(set(known.values())))}")
+    times = [each.number("s", 0.0, seconds) for each in keys["at"]] if "at" in keys else []
+    if len(times) not in (0, 2) or (times and times[0] >= times[1]):
+        keys["at"].fail("at of faults: expected two times, the earlier first")
+    low, high = times or (0.0, seconds)
+    return [Quantity(_FAULT, kind="choice", choices=tuple(dict.fromkeys(chosen)), is_word=True),
+            Quantity(_FAULT_TIME, "s", low=low, high=high)]
