@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include <repel/common/complaint.hpp>
 #include <repel/runs/arms/arm_backend.hpp>
+#include <repel/runs/faults/choice.hpp>
 #include <repel/runs/operator/device.hpp>
 #include <repel/runs/options/budget.hpp>
 #include <repel/runs/options/link_choice.hpp>
@@ -143,6 +145,24 @@ void describe_arm(CLI::App& app, Arguments& a) {
   app.add_flag("!--no-prediction", a.run.prediction,
                "Solve the network for the measured rates, without the mass of the arm, for "
                "comparison; arms with light wrists become unstable");
+}
+
+/// The faults that are injected.
+void describe_faults(CLI::App& app, Arguments& a) {
+  const auto complaint = [](const std::string& text) {
+    return complaint_of([&] { (void)faults::choice_in(text); });
+  };
+  app.option_defaults()->group("Arm");
+  app.add_option_function<std::vector<std::string>>(
+         "--fault",
+         [&a](const std::vector<std::string>& all) {
+           for (const std::string& each : all) a.run.faults.push_back(faults::choice_in(each));
+         },
+         "Fault between the first arm and its controller, from a scene time [s] on, as 'frame "
+         "frozen@2.5'; may be repeated. Their names: teleop list --faults")
+      ->allow_extra_args(false)
+      ->type_name("NAME@SECONDS")
+      ->check(CLI::Validator(complaint, ""));
 }
 
 void describe_walls(CLI::App& app, Arguments& a) {
@@ -324,7 +344,11 @@ void describe(CLI::App& app, Arguments& a) {
   for (const auto& [command, name, about] : commands) {
     CLI::App& added = *app.add_subcommand(name, about)->group("Commands");
     added.final_callback([&added, &a, command = command] { settle(added, command, a); });
-    if (command == Command::list) continue;
+    if (command == Command::list) {
+      added.add_flag("--faults", a.faults,
+                     "List the faults that teleop run --fault injects, with their kinds");
+      continue;
+    }
     if (command == Command::key) {
       added.add_option("file", a.key_file, "File of the key, which must not exist")
           ->required()
@@ -337,6 +361,7 @@ void describe(CLI::App& app, Arguments& a) {
     if (has_robot) describe_coprocessor(added, a);
     if (has_robot || command == Command::check) {
       describe_arm(added, a);
+      if (command == Command::run) describe_faults(added, a);
       describe_walls(added, a);
     }
     if (command == Command::check) {

@@ -31,6 +31,7 @@ struct Arguments {
   std::string html;    ///< file for the page; empty: none
   bool is_quiet = false;
   bool schema = false;  ///< print it and stop
+  bool faults = false;  ///< list them and not the scenes
 };
 
 /// Declares the commands and their options. They write to the arguments.

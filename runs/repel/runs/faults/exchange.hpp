@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <random>
 #include <span>
 #include <vector>
@@ -66,8 +67,8 @@ struct DriveOfJoint {
 
 /// A tick. A fault changes what belongs to its class; all else is for it to read.
 struct Exchange {
-  int since = -1;       ///< ticks since the fault began, 0 in its first; below 0: not yet
-  double period = 0.0;  ///< [s]
+  std::int64_t since = -1;  ///< ticks since the fault began, 0 in its first; below 0: not yet
+  double period = 0.0;      ///< [s]
   std::size_t shoulder = 0, wrist = 0;  ///< joints that most and least move the tool
   std::vector<double> away;  ///< sign of a reading's error by which a joint seems farther off
   std::mt19937_64 random;
@@ -112,13 +113,13 @@ struct Exchange {
   }
 
   /// [s] since the fault began.
-  [[nodiscard]] double time() const { return since * period; }
+  [[nodiscard]] double time() const { return static_cast<double>(since) * period; }
   /// Normally distributed.
   double noise(double deviation) {
     return std::normal_distribution<double>(0.0, deviation)(random);
   }
   /// The sound reading of so many ticks before.
-  [[nodiscard]] const Reading& before(int ticks) const {
+  [[nodiscard]] const Reading& before(std::int64_t ticks) const {
     return older[static_cast<std::size_t>(ticks)];
   }
   /// Of so much time [s], to the nearest.
