@@ -14,6 +14,8 @@
 #include <repel/host/command_line.hpp>
 #include <repel/host/figure.hpp>
 #include <repel/runs/engine/session.hpp>
+#include <repel/runs/faults/choice.hpp>
+#include <repel/runs/faults/exchange.hpp>
 #include <repel/runs/options/link_choice.hpp>
 #include <repel/runs/options/run_options.hpp>
 #include <repel/runs/options/session_options.hpp>
@@ -247,6 +249,13 @@ int list() {
   return host::has_printed() ? 0 : 4;
 }
 
+int list_faults() {
+  for (const faults::Fault& fault : faults::all_faults()) {
+    if (faults::can_be_had(fault)) std::printf("%-10s  %s\n", to_text(fault.kind), fault.name);
+  }
+  return host::has_printed() ? 0 : 4;
+}
+
 int print_schema() {
   std::printf("%s\n", scene::schema().c_str());
   return host::has_printed() ? 0 : 4;
@@ -263,7 +272,7 @@ int make_key(const std::string& file) {
 
 int execute(const Arguments& arguments) {
   if (arguments.command == Command::key) return make_key(arguments.key_file);
-  if (arguments.command == Command::list) return list();
+  if (arguments.command == Command::list) return arguments.faults ? list_faults() : list();
   if (arguments.schema) return print_schema();
   const Work work = work_of(arguments);
   if (arguments.command == Command::check) return check(work);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <repel/runs/arms/arm_backend.hpp>
+#include <repel/runs/faults/choice.hpp>
 #include <repel/runs/operator/device.hpp>
 #include <repel/runs/options/link_choice.hpp>
 #include <repel/runs/options/listening.hpp>
@@ -214,7 +215,11 @@ void describe(CLI::App& app, Arguments& a) {
   for (const auto& [command, name, about] : commands) {
     CLI::App& added = *app.add_subcommand(name, about)->group("Commands");
     added.final_callback([&added, &a, command = command] { settle(added, command, a); });
-    if (command == Command::list) continue;
+    if (command == Command::list) {
+      added.add_flag("--faults", a.faults,
+                     "List the faults that teleop run --fault injects, with their kinds");
+      continue;
+    }
     if (command == Command::key) {
       added.add_option("file", a.key_file, "File of the key, which must not exist")
           ->required()

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include <repel/host/command_line.hpp>
-#include <repel/runs/options/run_choice.hpp>
 #include <repel/runs/options/session_options.hpp>
+#include <repel/runs/setup/run_choice.hpp>
 
 namespace repel::teleop {
 
@@ -27,6 +27,7 @@ struct Arguments {
   std::string html;    ///< file for the page; empty: none
   bool is_quiet = false;
   bool schema = false;  ///< print it and stop
+  bool faults = false;  ///< list them and not the scenes
 };
 
 /// Declares the commands and their options. They write to the arguments.

@@ -9,17 +9,10 @@
 #include <Eigen/Core>
 
 #include <repel/robots/dynamics.hpp>
+#include <repel/runs/faults/exchange.hpp>
 #include <repel/world/arm.hpp>
 
 namespace repel::faults {
-
-/// What the drive of a joint does in a tick. Torques [N m] or [N].
-struct DriveOfJoint {
-  double torque = 0.0;       ///< that the motor is to give; it gives its effort limit at most
-  double effort = 0.0;       ///< its effort limit
-  double brake_holds = 1.0;  ///< share of the brake's torque while brakes are on
-  double brake_drags = 0.0;  ///< the same while they are off
-};
 
 /// The joints of an arm in time: M a = tau - c - D v, and dry friction and brakes that hold a joint
 /// still. M and c, by KDL, hold for one `step`.

@@ -9,7 +9,7 @@
 #include <repel/cell/description.hpp>
 #include <repel/network/modules/limits.hpp>
 
-#include "exchange.hpp"
+#include "plant.hpp"
 
 namespace repel::faults {
 

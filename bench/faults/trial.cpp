@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <repel/cell/cell.hpp>
+#include <repel/runs/faults/spoilt_kinematics.hpp>
 #include <repel/simulated/arm_drive.hpp>
 #include <repel/world/kinematics.hpp>
 
@@ -22,46 +23,6 @@ constexpr double more = 5e-3;        // [m] into a soft wall, than without a fau
 constexpr Status telling = status::failsafe | status::hold_lost;
 constexpr Status blind = status::blind | status::bad_pose;
 
-/// Kinematics with a fault.
-class SpoiltKinematics final : public ArmKinematics {
- public:
-  SpoiltKinematics(const ArmModel& model, Exchange& x, const Fault* fault)
-      : sound_(model), x_(x), fault_(fault) {
-    const auto n = static_cast<Eigen::Index>(model.links.size());
-    x_.answers.J.setZero(6, n);
-    x_.answers.M.setZero(n, n);
-    x_.answers.gravity.resize(model.links.size());
-  }
-  void update(std::span<const double> q) noexcept override {
-    sound_.update(q);
-    Answers& a = x_.answers;
-    a.X_WT = sound_.X_WT();
-    sound_.tool_jacobian(a.J);
-    sound_.gravity_torques(a.gravity);
-    (void)sound_.mass_matrix(a.M);
-    if (x_.since < 0) x_.known = a;
-    if (fault_ != nullptr) fault_->act(Kind::kinematics, x_);
-  }
-  [[nodiscard]] Pose X_WT() const noexcept override { return x_.answers.X_WT; }
-  void tool_jacobian(JacobianRef J) const noexcept override { J = x_.answers.J; }
-  void gravity_torques(std::span<double> out) noexcept override {
-    std::copy(x_.answers.gravity.begin(), x_.answers.gravity.end(), out.begin());
-  }
-  [[nodiscard]] Pose X_WL(int link) const noexcept override { return sound_.X_WL(link); }
-  void jacobian(int link, const Vec3& p_WQ, JacobianRef J) const noexcept override {
-    sound_.jacobian(link, p_WQ, J);
-  }
-  [[nodiscard]] bool mass_matrix(Eigen::MatrixXd& M) const noexcept override {
-    M = x_.answers.M;
-    return true;
-  }
-
- private:
-  Kinematics sound_;
-  Exchange& x_;
-  const Fault* fault_;
-};
-
 /// An arm, its cell and what passes between them.
 class Loop {
  public:
@@ -69,18 +30,16 @@ class Loop {
       : has_brakes_(setting.has_brakes),
         rig_(std::move(rig)),
         fault_(fault),
+        x_(rig_.start, 1.0 / setting.rate, rig_.late),
         truth_(rig_.plant, rig_.parts),
         plant_(rig_.plant),
-        cell_(described(rig_, setting, std::make_unique<SpoiltKinematics>(rig_.model, x_, fault))) {
+        cell_(described(rig_, setting, kinematics())) {
     truth_.set_wall(rig_.X_WB, rig_.half);
     plant_.reset(rig_.start);
-    x_.period = 1.0 / setting.rate;
     x_.shoulder = rig_.shoulder;
     x_.wrist = rig_.wrist;
-    x_.late = rig_.late;
     x_.inward = rig_.inward;
     x_.random.seed(setting.seed);
-    x_.drive.resize(rig_.start.size());
     for (std::size_t i = 0; i < x_.drive.size(); ++i) {
       x_.drive[i].effort = rig_.model.links[i].effort_limit;
     }
@@ -122,6 +81,10 @@ class Loop {
   }
 
  private:
+  std::unique_ptr<ArmKinematics> kinematics() {
+    return std::make_unique<SpoiltKinematics>(std::make_unique<Kinematics>(rig_.model), x_, fault_);
+  }
+
   void change(Kind kind) {
     if (fault_ != nullptr) fault_->act(kind, x_);
   }
@@ -141,8 +104,7 @@ class Loop {
   void sense() {
     x_.read = {plant_.q(), plant_.v()};
     if (rig_.sensed != nullptr) rig_.sensed(x_);
-    x_.older.push_front(x_.read);
-    if (x_.older.size() > static_cast<std::size_t>(x_.ticks(0.06))) x_.older.pop_back();
+    x_.older.push(x_.read);
     if (x_.since < 0) {
       x_.held = x_.read;
       note_ways();
@@ -157,9 +119,8 @@ class Loop {
     drive_.heard();
     drive_.engage_brakes(record.brakes && has_brakes_);
     const auto begin = record.torques.begin();
-    x_.sent.emplace_front(begin, begin + static_cast<std::ptrdiff_t>(x_.drive.size()));
-    if (x_.sent.size() > 20) x_.sent.pop_back();
-    const std::vector<double>& acts = x_.sent[std::min(x_.late, x_.sent.size() - 1)];
+    x_.sent.push({begin, begin + static_cast<std::ptrdiff_t>(x_.drive.size())});
+    const std::vector<double>& acts = x_.sent[x_.late];
     for (std::size_t i = 0; i < acts.size(); ++i) x_.drive[i].torque = acts[i];
     x_.stops = false;
     change(Kind::drive);
@@ -180,11 +141,10 @@ class Loop {
 
   // The sign by which a reading of each joint must be wrong for the wall to seem farther off.
   void note_ways() {
-    x_.away.assign(rig_.start.size(), 1.0);
     std::vector<double> q = plant_.q();
     for (std::size_t i = 0; i < q.size(); ++i) {
       q[i] += 1e-3;
-      if (truth_.gap(q) < truth_.gap(plant_.q())) x_.away[i] = -1.0;
+      x_.away[i] = truth_.gap(q) < truth_.gap(plant_.q()) ? -1.0 : 1.0;
       q[i] -= 1e-3;
     }
   }

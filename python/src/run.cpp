@@ -17,9 +17,11 @@
 #include <nanobind/stl/vector.h>
 
 #include <repel/runs/engine/session.hpp>
-#include <repel/runs/operator/hand_track.hpp>
-#include <repel/runs/options/run_choice.hpp>
+#include <repel/runs/faults/choice.hpp>
+#include <repel/runs/faults/exchange.hpp>
+#include <repel/runs/options/hand_track.hpp>
 #include <repel/runs/report/report.hpp>
+#include <repel/runs/setup/run_choice.hpp>
 #include <repel/scene/scene.hpp>
 
 #include "bindings.hpp"
@@ -113,8 +115,9 @@ nb::tuple run_scene(const std::string& file, double seconds, bool fast,
   const scene::Scene scene = runs::scene_of(choice, file);
   choice.rate_hz = rate_hz.value_or(choice.rate_hz);
   runs::RunOptions options = runs::options_of(choice, scene);
-  options.seconds = checked("seconds", seconds, 0.0, 1e6, "s");
-  options.fast = fast;
+  options.seconds =
+      choice.has_seconds ? options.seconds : checked("seconds", seconds, 0.0, 1e6, "s");
+  options.fast = fast || options.fast;
   checked("rate_hz", options.rate_hz, 1.0, 1e5, "Hz");
   options.backend = backend.value_or(options.backend);
   options.log = log;
@@ -152,6 +155,19 @@ void bind_runs(nb::module_& m) {
                 "backend: str | None, log: str, on_tick: typing.Any, every: int, stop: typing.Any, "
                 "arguments: list[str], hands: list[typing.Any]) -> tuple[str, int]"),
         "See repel.run: the report as JSON, and the exit status of teleop.");
+  m.def(
+      "fault_names",
+      [] {
+        nb::list names;
+        for (const faults::Fault& fault : faults::all_faults()) {
+          if (faults::can_be_had(fault)) {
+            names.append(nb::make_tuple(fault.name, faults::to_text(fault.kind)));
+          }
+        }
+        return names;
+      },
+      nb::sig("def fault_names() -> list[tuple[str, str]]"),
+      "The faults that a run can have, each with its kind: those of teleop list --faults.");
   m.def("run_words", &runs::names_of_choice,
         "The options of teleop run that `run_scene` takes as arguments.");
 }

@@ -10,8 +10,8 @@
 
 #include <end_to_end/folder.hpp>
 #include <repel/base/setup_error.hpp>
-#include <repel/runs/operator/hand_track.hpp>
 #include <repel/runs/operator/operator_input.hpp>
+#include <repel/runs/options/hand_track.hpp>
 
 namespace repel::runs {
 namespace hand_track_test {

@@ -11,6 +11,7 @@
 
 #include <repel/cell/arm_port.hpp>
 #include <repel/cell/cell.hpp>
+#include <repel/runs/faults/injected_faults.hpp>
 #include <repel/runs/operator/operator_input.hpp>
 #include <repel/runs/operator/part_steps.hpp>
 #include <repel/runs/records/recording.hpp>
@@ -26,11 +27,14 @@ class DrivenCell {
   /// @param operators likewise
   /// @param scene of the cell
   /// @param remote link to the first operator; null: that operator is here
+  /// @param faults of the first arm, which outlive this object; null: none
   DrivenCell(Cell& cell, const scene::Scene& scene,
              std::vector<std::unique_ptr<TorqueDrivenArm>> arms,
-             std::vector<OperatorInput> operators, network::RemoteLink* remote = nullptr)
+             std::vector<OperatorInput> operators, network::RemoteLink* remote = nullptr,
+             faults::InjectedFaults* faults = nullptr)
       : cell_(cell),
         remote_(remote),
+        faults_(faults),
         scripted_parts_(scene.loose.size()),
         steps_(scene, cell),
         arms_(std::move(arms)),
@@ -42,17 +46,30 @@ class DrivenCell {
     }
   }
 
+  /// To be called before each tick, due at `now` [ns]: begins the faults whose time has come.
+  /// Returns the time that the tick is to be told. @param period [s]
+  std::chrono::nanoseconds begin_tick(std::chrono::nanoseconds now, double period) {
+    if (faults_ == nullptr) return now;
+    faults_->begin_tick(cell_, last_);
+    const auto told = faults_->tell(now);
+    move_arms(period, told.missed);
+    return told.now;
+  }
+
   /// Runs one tick, due at `now` [ns]. Returns the record of each arm, in their order.
   std::span<const TickRecord* const> tick(std::chrono::nanoseconds now) noexcept {
     if (remote_ != nullptr) remote_->receive(now);
     for (std::size_t i = 0; i < ports_.size(); ++i) readings_[i] = ports_[i].read();
+    if (faults_ != nullptr) faults_->spoil(readings_.front());
     cell_.sense(readings_, now);
     for (std::size_t i = 0; i < operators_.size(); ++i) {
       commands_[i] = operators_[i].step(cell_.X_WT(i).linear(), cell_.elapsed());
       if (i == 0 && remote_ != nullptr && !has_let_go_) commands_[i] = heard_command(*remote_);
+      if (i == 0 && faults_ != nullptr && !has_let_go_) faults_->spoil(commands_[i]);
       if (!commands_[i].is_silent(blind_for_)) commands_[i].silent_for = blind_for_;
     }
     const auto records = cell_.act(commands_);
+    last_ = records.front();
     if (remote_ != nullptr) {
       tell(*records.front(), cell_.X_WT(0), next_part(records.front()->tick), *remote_);
     }
@@ -115,6 +132,8 @@ class DrivenCell {
 
   Cell& cell_;
   network::RemoteLink* remote_;
+  faults::InjectedFaults* faults_;
+  const TickRecord* last_ = nullptr;  // of the first arm
   std::size_t scripted_parts_;
   bool has_let_go_ = false;
   PartSteps steps_;

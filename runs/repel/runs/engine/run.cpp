@@ -188,12 +188,14 @@ void make_ticks(DrivenCell& driven, CameraFeeds* cameras, const Attachments& att
     k += lost;
     if (recording != nullptr) driven.replay(*recording, tick);
     if (cameras != nullptr) driven.set_blind_for(cameras->silent_for());
+    const nanoseconds now =
+        driven.begin_tick(options.fast ? clock.next(tick) : due + lost * period, period_s);
     usage.begin();
     const auto begin = steady_clock::now();
     {
       const host::HeapGuard heap;
       const SystemCallGuard system_calls;
-      records = driven.tick(options.fast ? clock.next(tick) : due + lost * period);
+      records = driven.tick(now);
     }
     const auto end = steady_clock::now();
     usage.end();
@@ -276,6 +278,7 @@ std::vector<std::unique_ptr<TorqueDrivenArm>> make_arms(const PreparedRun& prepa
           std::make_unique<ServoedArm>(std::move(simulated), known_model(prepared, i), arm.model,
                                        admittance->response, 1.0 / prepared.options.rate_hz);
     }
+    if (prepared.faults && i == 0) simulated = prepared.faults->spoilt(std::move(simulated));
     arms.push_back(std::make_unique<DelayedArm>(std::move(simulated), arm.model.links.size(),
                                                 prepared.scene.arm_setup(i).robot.drive_delay));
   }
@@ -342,7 +345,7 @@ RunResult run(PreparedRun& prepared, const Attachments& attached, const std::ato
   const RunOptions& options = result.options;
   Cell& cell = prepared.cell;
   DrivenCell driven(cell, prepared.scene, make_arms(prepared, attached.recording),
-                    make_operators(prepared, attached), attached.remote);
+                    make_operators(prepared, attached), attached.remote, prepared.faults.get());
   const std::int64_t ticks = ticks_of(options, attached.recording);
   Observers observers = observers_for(options, cell, ticks);
   result.times.reserve(static_cast<std::size_t>(kept_ticks(options, ticks)));

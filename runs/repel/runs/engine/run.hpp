@@ -14,7 +14,7 @@
 #include <repel/runs/engine/progress_thread.hpp>
 #include <repel/runs/operator/controls.hpp>
 #include <repel/runs/operator/device.hpp>
-#include <repel/runs/operator/hand_track.hpp>
+#include <repel/runs/options/hand_track.hpp>
 #include <repel/runs/records/dated_shapes.hpp>
 #include <repel/runs/records/recording.hpp>
 #include <repel/runs/report/results.hpp>

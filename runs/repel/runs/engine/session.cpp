@@ -99,6 +99,7 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
   const Device device = open_device(session.device);
   std::optional<RemoteEnd> remote;
   if (session.link.side) remote.emplace(scene, options);
+  if (remote) faults::require_no_operator(options.faults);
   std::unique_ptr<PreparedRun> prepared =
       prepare(scene, options, recording, remote ? &remote->link : nullptr);
   require_passive_grip(device, prepared->cell.network(0));

@@ -13,7 +13,7 @@
 #include <repel/network/operator.hpp>
 #include <repel/runs/operator/controls.hpp>
 #include <repel/runs/operator/device.hpp>
-#include <repel/runs/operator/hand_track.hpp>
+#include <repel/runs/options/hand_track.hpp>
 #include <repel/visual/page_command.hpp>
 
 #ifdef REPEL_RUNS_DEVICES

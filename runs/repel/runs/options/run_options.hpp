@@ -4,7 +4,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include <repel/runs/faults/choice.hpp>
 #include <repel/schedule/coprocessor_options.hpp>
 
 namespace repel::runs {
@@ -26,7 +28,8 @@ struct RunOptions {
   double plant_inertia = 1.0;  ///< inertia of the simulated arms as a multiple of their models'
   bool prediction = true;      ///< see TeleoperatorOptions
   bool keep_records = false;   ///< for the HTML report
-  std::string log;             ///< file to which every tick is written; empty: none
+  std::vector<faults::Choice> faults{};  ///< between the first arm and the cell
+  std::string log;                       ///< file to which every tick is written; empty: none
 };
 
 }  // namespace repel::runs

@@ -11,7 +11,7 @@
 
 #include <repel/cell/cell.hpp>
 #include <repel/network/operator.hpp>
-#include <repel/runs/operator/hand_track.hpp>
+#include <repel/runs/options/hand_track.hpp>
 #include <repel/runs/options/link_choice.hpp>
 
 namespace repel::runs {

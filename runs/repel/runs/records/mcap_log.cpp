@@ -184,7 +184,9 @@ class McapLog final : public TickLog {
       begin_ns_ = static_cast<std::uint64_t>(
           std::chrono::nanoseconds(system_clock::now().time_since_epoch()).count());
     }
-    writer_.add_metadata(mcap::run_metadata, metadata_of(scene, options));
+    std::map<std::string, std::string> how = metadata_of(scene, options);
+    if (!options.faults.empty()) how["faults"] = faults::to_text(options.faults);
+    writer_.add_metadata(mcap::run_metadata, how);
     writer_.attach(mcap::scene_attachment, "application/yaml", read_file(scene.file), begin_ns_);
     for (std::size_t i = 0; i <= scene.partners.size(); ++i) {
       attach(mcap::robot_attachment(i), "application/xml", scene.arm_setup(i).robot.urdf);

@@ -124,7 +124,7 @@ void read_inputs(const Fields& arm, TickRecord& k) {
     k.wrench_read = Wrench{arm.at("force_read").vector(), arm.at("torque_read").vector()};
   }
   if (arm.has("elapsed_ticks")) {
-    k.elapsed = std::clamp<std::int64_t>(arm.at("elapsed_ticks").integer(), 1, 1000000000);
+    k.elapsed = std::max<std::int64_t>(1, arm.at("elapsed_ticks").integer());
   }
   k.status = static_cast<Status>(arm.at("status").integer());
   k.phase = static_cast<std::int32_t>(arm.at("phase").integer());
@@ -291,6 +291,7 @@ void read_options(const McapReader& reader, Recording& recording, RecordedScene&
               most_inertia_factor, "");
       checked("levels of the recording", options.levels, 0.0, ReductionOptions::most_levels, "");
       require_measure(options.measure);
+      options.faults = faults::choices_in(word("faults"));  // without the key: none
     } catch (const SetupError& error) {
       throw SetupError(error.what(), recording.file);
     }

@@ -47,7 +47,9 @@ void compare(const Recording& recording, std::size_t tick,
 nanoseconds RegularClock::next(std::size_t tick) noexcept {
   if (recording_ == nullptr) return now_ += period_;
   const TickRecord& then = recording_->arms.front()[tick];
-  now_ += then.elapsed * period_;
+  // A clock that jumped to its end was recorded as so many periods.
+  const bool has_room = then.elapsed <= (nanoseconds::max() - now_) / period_;
+  now_ = has_room ? now_ + then.elapsed * period_ : nanoseconds::max();
   const bool stood = (then.status & status::clock_fault) != 0U;
   return stood ? nanoseconds::min() : now_;
 }

@@ -9,6 +9,7 @@
 
 #include <repel/host/figure.hpp>
 #include <repel/host/times.hpp>
+#include <repel/runs/faults/exchange.hpp>
 #include <repel/runs/report/chatter_report.hpp>
 #include <repel/runs/report/link_laws.hpp>
 #include <repel/runs/report/network_report.hpp>
@@ -103,6 +104,26 @@ void print_plant(const RunResult& r, std::FILE* out) {
                to_text(robot.payload.mass) + " kg" + whose +
                    (robot.payload_known ? "" : ", unknown to the controller"),
                out);
+  }
+}
+
+/// The faults that were injected, in the order of the command line.
+ordered_json injected_faults(const RunResult& r) {
+  ordered_json list = ordered_json::array();
+  for (const faults::Choice& each : r.options.faults) {
+    list.push_back({{"name", each.name},
+                    {"kind", faults::to_text(faults::fault_named(each.name).kind)},
+                    {"begin_s", each.begin}});
+  }
+  return list;
+}
+
+void print_injected_faults(const RunResult& r, std::FILE* out) {
+  for (const faults::Choice& each : r.options.faults) {
+    const faults::Kind kind = faults::fault_named(each.name).kind;
+    print_line(
+        "injected fault",
+        each.name + " (" + faults::to_text(kind) + "), from " + to_text(each.begin) + " s on", out);
   }
 }
 
@@ -447,6 +468,7 @@ void print_report(const RunResult& r, std::FILE* out) {
   if (!r.log_trouble.empty()) print_line("log is not whole", r.log_trouble, out);
   for (const std::string& warning : r.warnings) print_line("warning", warning, out);
   print_plant(r, out);
+  print_injected_faults(r, out);
   if (!measure_text(r).empty()) print_line("measure of overlaps", measure_text(r), out);
   host::print_times("compute of the tick", r.deadline.compute(), out);
   if (!r.options.fast) host::print_times("wake-up lateness", r.deadline.wakeup(), out);
@@ -548,6 +570,7 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["every_pair"] = r.options.every_pair;
   report["plant_inertia"] = r.options.plant_inertia;
   report["prediction"] = r.options.prediction;
+  report["faults"] = injected_faults(r);
   report["drive_delay_ticks"] = r.scene.robot.drive_delay;
   report["admittance_response_s"] =
       r.scene.robot.admittance ? ordered_json(r.scene.robot.admittance->response) : nullptr;

@@ -87,6 +87,23 @@ void set_hold(CellDescription& cell, const std::string& word) {
   }
 }
 
+/// The faults of the first arm, in its kinematics by now; null: none. What they did to readings,
+/// command, clock and drive stands in a recording already.
+std::unique_ptr<faults::InjectedFaults> inject(const RunOptions& options, bool is_replay,
+                                               CellDescription& cell) {
+  std::vector<faults::Choice> chosen = options.faults;
+  if (is_replay) {
+    std::erase_if(chosen, [](const faults::Choice& each) {
+      return faults::fault_named(each.name).kind != faults::Kind::kinematics;
+    });
+  }
+  if (chosen.empty()) return nullptr;
+  ArmDescription& arm = cell.arms.front();
+  auto injected = std::make_unique<faults::InjectedFaults>(chosen, arm, options.rate_hz);
+  arm.kinematics = injected->spoilt(std::move(arm.kinematics));
+  return injected;
+}
+
 }  // namespace
 
 RunOptions options_of(const scene::Scene& scene) {
@@ -116,8 +133,10 @@ std::unique_ptr<PreparedRun> prepare(const scene::Scene& scene, const RunOptions
   const bool refuses = described.cell.start_inside == StartInside::refuse;
   // A recorded run was allowed to start.
   if (recording != nullptr && refuses) described.cell.start_inside = StartInside::allow;
+  auto injected = inject(options, recording != nullptr, described.cell);
   try {
-    return std::make_unique<PreparedRun>(std::move(changed), options, std::move(described));
+    return std::make_unique<PreparedRun>(std::move(changed), options, std::move(described),
+                                         std::move(injected));
   } catch (const SetupError& error) {
     throw scene::located(scene, error);
   }

@@ -9,6 +9,7 @@
 
 #include <repel/cell/cell.hpp>
 #include <repel/robots/urdf.hpp>
+#include <repel/runs/faults/injected_faults.hpp>
 #include <repel/runs/options/run_options.hpp>
 #include <repel/runs/records/recording.hpp>
 #include <repel/runs/setup/describe.hpp>
@@ -18,11 +19,13 @@ namespace repel::runs {
 
 /// The state that a run starts from and consumes.
 struct PreparedRun {
-  PreparedRun(scene::Scene changed, const RunOptions& run, DescribedScene described)
+  PreparedRun(scene::Scene changed, const RunOptions& run, DescribedScene described,
+              std::unique_ptr<faults::InjectedFaults> injected = nullptr)
       : scene(std::move(changed)),
         options(run),
         robots(std::move(described.robots)),
         gaps(std::move(described.gaps)),
+        faults(std::move(injected)),
         cell(std::move(described.cell)) {}
 
   /// With the changes made by the options, the obstacles of its models, and all lists of parts.
@@ -30,6 +33,8 @@ struct PreparedRun {
   RunOptions options;
   std::vector<Robot> robots;      ///< of the arms, in their order
   std::vector<scene::Gaps> gaps;  ///< of DescribedScene
+  /// Of the first arm; null: none. The cell has its kinematics by them.
+  std::unique_ptr<faults::InjectedFaults> faults;
   Cell cell;
 };
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The faults: one line for each.
+#include <repel/runs/faults/exchange.hpp>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-
-#include "exchange.hpp"
 
 namespace repel::faults {
 namespace {
@@ -91,6 +91,9 @@ void pull_lever(X& x) {
 }
 
 constexpr auto notice = Demand::notice;
+constexpr auto hold = Demand::hold;
+constexpr auto two = Needs::two_joints;
+constexpr auto brakes = Needs::joint_brakes;
 constexpr int always = 1;
 constexpr int once = 0;
 constexpr auto R = Kind::readings;
@@ -149,9 +152,9 @@ constexpr Fault table[] = {
     {"rates halved", R, [](X& x) { scale(x.read.v, 0.5); }},
     {"rates doubled", R, [](X& x) { scale(x.read.v, 2.0); }},
     {"rate of -1e308 once", R, [](X& x) { x.wrist_v() = -1e308; }, once},
-    {"rates exchanged", R, [](X& x) { std::swap(x.v(), x.wrist_v()); }},
-    {"positions exchanged", R, [](X& x) { std::swap(x.q(), x.wrist_q()); }},
-    {"joints exchanged", R, exchange_joints},
+    {"rates exchanged", R, [](X& x) { std::swap(x.v(), x.wrist_v()); }, always, hold, two},
+    {"positions exchanged", R, [](X& x) { std::swap(x.q(), x.wrist_q()); }, always, hold, two},
+    {"joints exchanged", R, exchange_joints, always, hold, two},
     {"readings late by a tick", R, [](X& x) { x.read = x.before(1); }},
     {"readings late by 2 ticks", R, [](X& x) { x.read = x.before(2); }},
     {"readings late by 5 ticks", R, [](X& x) { x.read = x.before(5); }},
@@ -165,12 +168,13 @@ constexpr Fault table[] = {
 
     {"mass NaN on the diagonal once", K, [](X& x) { x.answers.M(0, 0) = nan; }, once},
     {"mass NaN on the diagonal", K, [](X& x) { x.answers.M(at(x.wrist), at(x.wrist)) = nan; }},
-    {"mass NaN beside the diagonal once", K, [](X& x) { couple(x, nan); }, once},
-    {"mass NaN beside the diagonal", K, [](X& x) { couple(x, nan); }},
-    {"mass not positive definite once", K, [](X& x) { couple(x, 1e3); }, once},
-    {"mass not positive definite", K, [](X& x) { couple(x, 1e3); }},
+    {"mass NaN beside the diagonal once", K, [](X& x) { couple(x, nan); }, once, hold, two},
+    {"mass NaN beside the diagonal", K, [](X& x) { couple(x, nan); }, always, hold, two},
+    {"mass not positive definite once", K, [](X& x) { couple(x, 1e3); }, once, hold, two},
+    {"mass not positive definite", K, [](X& x) { couple(x, 1e3); }, always, hold, two},
     {"mass negative", K, [](X& x) { x.answers.M *= -1.0; }},
-    {"mass not symmetric", K, [](X& x) { x.answers.M(0, 1) += 0.5 * x.answers.M(0, 0); }},
+    {"mass not symmetric", K, [](X& x) { x.answers.M(0, 1) += 0.5 * x.answers.M(0, 0); }, always,
+     hold, two},
     {"mass zero", K, [](X& x) { x.answers.M.setZero(); }},
     {"mass 1e6 times", K, [](X& x) { x.answers.M *= 1e6; }},
     {"mass 1e-6 times", K, [](X& x) { x.answers.M *= 1e-6; }},
@@ -182,7 +186,7 @@ constexpr Fault table[] = {
     {"Jacobian zero", K, [](X& x) { x.answers.J.setZero(); }},
     {"Jacobian doubled", K, [](X& x) { x.answers.J *= 2.0; }},
     {"Jacobian turned round", K, [](X& x) { x.answers.J *= -1.0; }},
-    {"columns of the Jacobian exchanged", K, exchange_columns},
+    {"columns of the Jacobian exchanged", K, exchange_columns, always, hold, two},
     {"pose NaN once", K, [](X& x) { x.answers.X_WT.translation().y() = nan; }, once},
     {"pose NaN", K, [](X& x) { x.answers.X_WT.translation().y() = nan; }},
     {"pose no rotation", K, [](X& x) { x.answers.X_WT.linear() *= 1.5; }},
@@ -219,9 +223,12 @@ constexpr Fault table[] = {
     {"drive late by 5 ticks", D, [](X& x) { x.delay_drive(5); }},
     {"drive gives half its effort", D, weaken},
     {"drive adds 5 % of its effort", D, add_torque},
-    {"brake does not release, shoulder", D, [](X& x) { x.drive[x.shoulder].brake_drags = 1.0; }},
-    {"brake drags, wrist", D, [](X& x) { x.drive[x.wrist].brake_drags = 0.2; }},
-    {"brake does not hold, shoulder", D, [](X& x) { x.drive[x.shoulder].brake_holds = 0.0; }},
+    {"brake does not release, shoulder", D, [](X& x) { x.drive[x.shoulder].brake_drags = 1.0; },
+     always, hold, brakes},
+    {"brake drags, wrist", D, [](X& x) { x.drive[x.wrist].brake_drags = 0.2; }, always, hold,
+     brakes},
+    {"brake does not hold, shoulder", D, [](X& x) { x.drive[x.shoulder].brake_holds = 0.0; },
+     always, hold, brakes},
     {"drive stops by itself", D, [](X& x) { x.stops = x.since == 0; }},
 
     {"rates of the hand NaN", O, [](X& x) { x.ball().linear.setConstant(nan); }},

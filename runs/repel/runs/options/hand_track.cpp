@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/runs/operator/hand_track.hpp>
+#include <repel/runs/options/hand_track.hpp>
 
 #include <algorithm>
 #include <charconv>

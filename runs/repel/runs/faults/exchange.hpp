@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
-#include <deque>
+#include <cstdint>
 #include <random>
 #include <span>
 #include <vector>
@@ -16,9 +17,32 @@
 #include <repel/network/operator.hpp>
 #include <repel/world/arm_kinematics.hpp>
 
-#include "plant.hpp"
-
 namespace repel::faults {
+
+/// The last values of something. Allocates at construction only.
+template <class T>
+class Past {
+ public:
+  Past() = default;
+  /// @param most that are kept, 1 or more @param like what has their size
+  Past(std::size_t most, const T& like) : values_(most, like) {}
+
+  /// The newest one. It has the size of the others.
+  void push(const T& value) {
+    newest_ = (newest_ + 1) % values_.size();
+    values_[newest_] = value;
+    count_ = std::min(count_ + 1, values_.size());
+  }
+  /// That of so many pushes before the newest, or the oldest there is.
+  [[nodiscard]] const T& operator[](std::size_t age) const {
+    const std::size_t all = values_.size();
+    return values_[(newest_ + all - std::min(age, count_ - 1)) % all];
+  }
+
+ private:
+  std::vector<T> values_;  // a ring
+  std::size_t newest_ = 0, count_ = 0;
+};
 
 /// Positions [rad] or [m] and rates of the joints.
 struct Reading {
@@ -33,17 +57,25 @@ struct Answers {
   Eigen::MatrixXd M;            ///< [kg m^2]
 };
 
+/// What the drive of a joint does in a tick. Torques [N m] or [N].
+struct DriveOfJoint {
+  double torque = 0.0;       ///< that the motor is to give; it gives its effort limit at most
+  double effort = 0.0;       ///< its effort limit
+  double brake_holds = 1.0;  ///< share of the brake's torque while brakes are on
+  double brake_drags = 0.0;  ///< the same while they are off
+};
+
 /// A tick. A fault changes what belongs to its class; all else is for it to read.
 struct Exchange {
-  int since = -1;       ///< ticks since the fault began, 0 in its first; below 0: not yet
-  double period = 0.0;  ///< [s]
-  std::size_t shoulder = 0, wrist = 0;  ///< joints that most and least move the tool to the wall
+  std::int64_t since = -1;  ///< ticks since the fault began, 0 in its first; below 0: not yet
+  double period = 0.0;      ///< [s]
+  std::size_t shoulder = 0, wrist = 0;  ///< joints that most and least move the tool
   std::vector<double> away;  ///< sign of a reading's error by which a joint seems farther off
   std::mt19937_64 random;
 
-  Reading read;               ///< class readings
-  Reading held;               ///< that of the last tick before the fault
-  std::deque<Reading> older;  ///< sound ones, the newest first: that of this tick
+  Reading read;         ///< class readings
+  Reading held;         ///< that of the last tick before the fault
+  Past<Reading> older;  ///< sound ones, the newest is that of this tick
 
   Answers answers;  ///< class kinematics
   Answers known;    ///< those of the last tick before the fault
@@ -52,24 +84,45 @@ struct Exchange {
   std::chrono::nanoseconds begun{0};  ///< that of the last tick before the fault
   int missed = 0;                     ///< class clock: ticks that the loop stands still before it
 
-  std::vector<DriveOfJoint> drive;       ///< class drive
-  bool stops = false;                    ///< class drive: it stops by itself
-  std::deque<std::vector<double>> sent;  ///< [N m] torques, the newest first
-  std::size_t late = 0;                  ///< [ticks] by which the drive is late, as told
+  std::vector<DriveOfJoint> drive;  ///< class drive
+  bool stops = false;               ///< class drive: it stops by itself
+  Past<std::vector<double>> sent;   ///< [N m] torques
+  std::size_t late = 0;             ///< [ticks] by which the drive is late, as told
 
   network::Command command;  ///< class operator
   Vec3 inward{0, 0, 0};      ///< unit, into the wall
 
+  Exchange() = default;
+  /// Of an arm that begins at rest. Faults of it allocate nothing.
+  /// @param start [rad] or [m] @param tick [s] its period @param delay [ticks] of its drive, as
+  /// told
+  Exchange(const std::vector<double>& start, double tick, std::size_t delay)
+      : period(tick),
+        away(start.size(), 1.0),
+        read{start, std::vector<double>(start.size())},
+        held(read),
+        older(static_cast<std::size_t>(std::max(6, ticks(0.06))), read),
+        drive(start.size()),
+        sent(delay + 6, read.v),
+        late(delay) {
+    const auto n = static_cast<Eigen::Index>(start.size());
+    answers.J.setZero(6, n);
+    answers.M.setZero(n, n);
+    answers.gravity.resize(start.size());
+    known = answers;
+  }
+
   /// [s] since the fault began.
-  [[nodiscard]] double time() const { return since * period; }
+  [[nodiscard]] double time() const { return static_cast<double>(since) * period; }
   /// Normally distributed.
   double noise(double deviation) {
     return std::normal_distribution<double>(0.0, deviation)(random);
   }
   /// The sound reading of so many ticks before.
-  [[nodiscard]] const Reading& before(int ticks) const {
-    return older[std::min(static_cast<std::size_t>(ticks), older.size() - 1)];
+  [[nodiscard]] const Reading& before(std::int64_t ticks) const {
+    return older[static_cast<std::size_t>(ticks)];
   }
+  /// Of so much time [s], to the nearest.
   [[nodiscard]] int ticks(double seconds) const { return static_cast<int>(seconds / period + 0.5); }
 
   double& q() { return read.q[shoulder]; }
@@ -83,7 +136,7 @@ struct Exchange {
 
   /// Torques that act where the drive is later than told.
   void delay_drive(std::size_t ticks) {
-    const std::vector<double>& then = sent[std::min(late + ticks, sent.size() - 1)];
+    const std::vector<double>& then = sent[late + ticks];
     for (std::size_t i = 0; i < drive.size(); ++i) drive[i].torque = then[i];
   }
   /// A reading of a joint is off by `error` [rad], which makes it seem farther off the wall.
@@ -105,6 +158,7 @@ struct Exchange {
 /// At which place of the loop a fault is.
 enum class Kind { readings, kinematics, clock, drive, operators };
 
+/// "readings", "kinematics", "clock", "drive" or "operator".
 inline const char* to_text(Kind kind) {
   static constexpr const char* names[] = {"readings", "kinematics", "clock", "drive", "operator"};
   return names[static_cast<std::size_t>(kind)];
@@ -116,12 +170,21 @@ enum class Demand {
   notice,  ///< no loop can hold it: to say so
 };
 
+/// What an arm must have for a fault to make a difference.
+enum class Needs {
+  nothing,
+  two_joints,
+  joint_brakes,  ///< a brake for each joint, which simulated arms of scenes do not have
+};
+
+/// A fault, by name.
 struct Fault {
-  const char* name;
-  Kind kind;
-  void (*change)(Exchange&);
+  const char* name;           ///< what it is
+  Kind kind;                  ///< where it acts
+  void (*change)(Exchange&);  ///< what it does in a tick
   int every = 1;  ///< it acts in every so many ticks from its first on; 0: in its first alone
-  Demand demand = Demand::hold;
+  Demand demand = Demand::hold;  ///< what is asked of the loop
+  Needs needs = Needs::nothing;  ///< without which it is none
 
   /// Acts if it is of this kind and its time has come.
   void act(Kind place, Exchange& x) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/runs/options/run_choice.hpp>
+#include <repel/runs/setup/run_choice.hpp>
 
 #include <algorithm>
 #include <iterator>
@@ -7,8 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include <repel/common/complaint.hpp>
 #include <repel/host/command_line.hpp>
 #include <repel/runs/arms/arm_backend.hpp>
+#include <repel/runs/faults/choice.hpp>
 #include <repel/runs/options/budget.hpp>
 #include <repel/runs/setup/prepared_run.hpp>
 #include <repel/simulated/changed_arm.hpp>
@@ -127,6 +129,24 @@ void describe_arm(CLI::App& app, RunChoice& c) {
                "comparison; arms with light wrists become unstable");
 }
 
+/// The faults that are injected.
+void describe_faults(CLI::App& app, RunChoice& c) {
+  const auto complaint = [](const std::string& text) {
+    return complaint_of([&] { (void)faults::choice_in(text); });
+  };
+  app.option_defaults()->group("Arm");
+  app.add_option_function<std::vector<std::string>>(
+         "--fault",
+         [&c](const std::vector<std::string>& all) {
+           for (const std::string& each : all) c.run.faults.push_back(faults::choice_in(each));
+         },
+         "Fault between the first arm and its controller, from a scene time [s] on, as 'frame "
+         "frozen@2.5'; may be repeated. Their names: teleop list --faults")
+      ->allow_extra_args(false)
+      ->type_name("NAME@SECONDS")
+      ->check(CLI::Validator(complaint, ""));
+}
+
 void describe_walls(CLI::App& app, RunChoice& c) {
   app.option_defaults()->group("Walls");
   app.add_option(
@@ -162,6 +182,7 @@ void describe(CLI::App& app, Choosing what, RunChoice& choice) {
   if (what == Choosing::station) return;
   if (what != Choosing::check) describe_coprocessor(app, choice);
   describe_arm(app, choice);
+  if (what == Choosing::run) describe_faults(app, choice);
   describe_walls(app, choice);
 }
 
