@@ -165,6 +165,7 @@ class Cluster:
         self._cluster: Any = None
         self._client: Any = None
         self._threads, self._counted = 0, 0.0
+        self._checked = b""
         logging.getLogger("distributed").setLevel(logging.CRITICAL)  # this says what matters
         self._config = needed("dask.config", "dask[distributed]", extra="study").set(_CONFIG)
         self._config.__enter__()
@@ -228,7 +229,9 @@ class Cluster:
         """As Engine.made. Waits for workers if there are none."""
         pickled = pickle.dumps(study)
         yield from self._first_worker()
-        self._check(pickled)
+        if pickled != self._checked:  # workers that come later check it before their first run
+            self._check(pickled)
+            self._checked = pickled
         done: queue.SimpleQueue[Any] = queue.SimpleQueue()
         flying: dict[str, tuple[Any, Sequence[Job]]] = {}
         suspects: list[Sequence[Job]] = []  # killed their workers, or were beside what did

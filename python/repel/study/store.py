@@ -32,11 +32,10 @@ _FORMAT = {"compression": "zstd", "version": "2.6", "write_statistics": True}
 
 
 class NotWritten(Exception):
-    """A file could not be written, as on a full disk."""
+    """A file could not be written, as on a full disk; what was written before is sound."""
 
     def __init__(self, path: Path, error: OSError):
-        super().__init__(f"{path}: not written: {error.strerror or error}; what was written before "
-                         "is sound")
+        super().__init__(f"{path}: not written: {error.strerror or error}")
 
 
 @contextlib.contextmanager
