@@ -96,11 +96,11 @@ def add_to(commands: Any) -> None:
     studying.add_argument("--out", metavar="FOLDER", required=True, help="of table and report")
     studying.add_argument("--resume", action="store_true", help="make the runs that are missing "
                           "in the folder")
-    studying.add_argument("--runs", type=_count, metavar="N", help="in place of the study's")
+    studying.add_argument("--runs", type=_whole(1), metavar="N", help="in place of the study's")
     studying.set_defaults(act=_run_study)
     replaying = commands.add_parser("study replay", help="make one run of a study again")
     replaying.add_argument("study", metavar="STUDY")
-    replaying.add_argument("index", metavar="INDEX", type=_index)
+    replaying.add_argument("index", metavar="INDEX", type=_whole(0))
     how = replaying.add_mutually_exclusive_group()
     how.add_argument("--view", action="store_true", help="in the live view")
     how.add_argument("--print", action="store_true", help="print the command only")
@@ -110,10 +110,10 @@ def add_to(commands: Any) -> None:
                                     "a study does not hold", epilog=_STATUS)
     searching.add_argument("study", metavar="STUDY")
     searching.add_argument("--out", metavar="FOLDER", help="default: NAME_falsified")
-    searching.add_argument("--runs", type=_count, metavar="N", default=500,
+    searching.add_argument("--runs", type=_whole(1), metavar="N", default=500,
                            help="of the search (default: %(default)s)")
     searching.add_argument("--minutes", type=float, metavar="M", help="of the search, at most")
-    searching.add_argument("--seed", type=_index, metavar="S", default=1)
+    searching.add_argument("--seed", type=_whole(0), metavar="S", default=1)
     searching.add_argument("--all", action="store_true", help="go on after the first failure, for "
                            "the worst one")
     searching.add_argument("--no-compare", dest="compare", action="store_false",
@@ -121,25 +121,20 @@ def add_to(commands: Any) -> None:
     searching.set_defaults(act=_falsify)
     for each in (studying, searching):
         where = each.add_mutually_exclusive_group()
-        where.add_argument("--workers", type=_index, metavar="N", help="processes of this machine "
+        where.add_argument("--workers", type=_whole(0), metavar="N", help="processes of this machine "
                            "(default: as many as processors; 0: in this process)")
         where.add_argument("--scheduler", metavar="ADDRESS", help="of Dask, as tcp://HOST:8786")
         each.add_argument("--quiet", action="store_true", help="no progress, no summary")
         each.add_argument("--json", action="store_true", help="print the summary as JSON")
 
 
-def _count(text: str) -> int:
-    number = int(text)
-    if number < 1:
-        raise ValueError
-    return number
-
-
-def _index(text: str) -> int:
-    number = int(text)
-    if number < 0:
-        raise ValueError
-    return number
+def _whole(least: int) -> Callable[[str], int]:
+    """Reads a whole number."""
+    def read(text: str) -> int:
+        if not text.isdecimal() or int(text) < least:
+            raise argparse.ArgumentTypeError(f"{text} is no whole number from {least} on")
+        return int(text)
+    return read
 
 
 def words(arguments: Sequence[str]) -> list[str]:

@@ -195,7 +195,9 @@ class Cluster:
             self._say(f"dashboard: {self._cluster.dashboard_link}")
 
     def _connect(self, address: str) -> None:
+        addressing = needed("distributed.comm.addressing", "dask[distributed]", extra="study")
         try:
+            addressing.get_address_host_port(address, strict=True)
             self._client = self._dask.Client(address, timeout=_CONNECT_S, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
             raise SetupError(
@@ -222,8 +224,9 @@ class Cluster:
                     self._counted = time.monotonic()
             if self._client.status == "running":
                 return self._threads
-        raise SetupError(f"the scheduler of {self._where} is gone; finished runs are kept; "
-                         "allowed: --resume with the address of a running one, or with --workers")
+        raise SetupError(f"the scheduler of {self._where} is gone; allowed: the "
+                         "address of a running one, or --workers; a study goes on with --resume, "
+                         "nothing is lost")
 
     def made(self, study: Study, jobs: Sequence[Job]) -> Iterator[Made | None]:
         """As Engine.made. Waits for workers if there are none."""

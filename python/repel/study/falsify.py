@@ -32,10 +32,11 @@ if TYPE_CHECKING:
     from .plan import Quantity, Study
 
 SAMPLE = 0.12  #: of the runs, those that are random
-SIGMA = 0.25  #: of the first generation, where all numbers are in 0..1
+STARTS = 3  #: from the worst of one random sample, with words and choices that differ
+SIGMA = 0.15  #: of the first generation, where all numbers are in 0..1
 _FAR = 1_000_000_000  #: from this index on, runs are drawn that no study makes
 _DRAWN = 200  # values drawn to see how far a quantity without bounds goes
-_STILL = 12  # generations without a better run, after which to start elsewhere
+_STILL = 10  # generations without a run better by 1 %, after which to start elsewhere
 
 Hand = list[float] | None  # numbers of the operator's hand
 
@@ -193,7 +194,7 @@ def search(study: Study, engine: Engine, *, runs: int = 500, seconds: float = ma
     restarts = 0
 
     def evaluate(what: Sequence[tuple[dict[str, float | str], Hand]]) -> list[Try]:
-        if trying.made >= runs or time.monotonic() > ends:
+        if trying.made >= runs or trying.made and time.monotonic() > ends:
             raise _Over
         tries = trying.evaluate(what[:runs - trying.made])
         if trying.first_failure and not every or len(tries) < len(what):
@@ -202,8 +203,8 @@ def search(study: Study, engine: Engine, *, runs: int = 500, seconds: float = ma
 
     first = _FAR + 1_000_000 * (seed + 1)
     with contextlib.suppress(_Over):
-        for restarts, (start, sigma) in enumerate(_starts(study, space, evaluate, first, runs)):
-            _descend(space, evaluate, start, sigma, seed + 1000 * restarts)
+        for restarts, start in enumerate(_starts(study, space, evaluate, first, runs)):
+            _descend(space, evaluate, start, seed + 1000 * restarts)
     assert trying.worst is not None
     random = Search(study, engine, tick)
     if compare:
@@ -220,40 +221,38 @@ def search(study: Study, engine: Engine, *, runs: int = 500, seconds: float = ma
 
 
 def _starts(study: Study, space: Space, evaluate: Callable[[Any], list[Try]], first: int,
-            runs: int) -> Iterator[tuple[Try, float]]:
-    """Random runs, the worst first; then random ones again, for as long as the budget lasts. The
-    second time around, steps are smaller, and so on."""
+            runs: int) -> Iterator[Try]:
+    """The worst of random runs, one for each combination of words and choices first; then of
+    others, for as long as the budget lasts."""
+    kinds = [each.name for each in study.quantities if is_choice(each)]
+    size = max(4, round(SAMPLE * runs))
     while True:
-        size = max(4, round(SAMPLE * runs))
         sample = evaluate([study.point(first + i) for i in range(size)])
         first += size
-        if space.size == 0:
-            continue  # words alone: random runs are all there is
-        ranked = sorted(sample, key=lambda each: each.margin)
-        for each in ranked[:3]:
-            yield each, SIGMA
+        best: dict[Any, Try] = {}
+        for each in sorted(sample, key=lambda each: each.margin):
+            best.setdefault(tuple(each.values[name] for name in kinds), each)
+        if space.size > 0:  # else random runs are all there is
+            yield from list(best.values())[:STARTS]
 
 
-def _descend(space: Space, evaluate: Callable[[Any], list[Try]], start: Try, sigma: float,
-             seed: int) -> None:
+def _descend(space: Space, evaluate: Callable[[Any], list[Try]], start: Try, seed: int) -> None:
     """Goes downhill from a run until that stands still."""
     cma = needed("cma", extra="study")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of plots and of small cubes
         strategy = cma.CMAEvolutionStrategy(
-            _inside(space.point(start.values, start.hand)), sigma,
-            {"bounds": [0, 1], "seed": seed + 1, "verbose": -9,
-             "CMA_diagonal": space.size > 8 and 100 or 0})
+            _inside(space.point(start.values, start.hand)), SIGMA,
+            {"bounds": [0, 1], "seed": seed + 1, "verbose": -9})
         best, still = start.margin, 0
         while still < _STILL and not strategy.stop():
             points = strategy.ask()
             tries = evaluate([space.run(np.asarray(point), start.values) for point in points])
-            margins = [each.margin for each in tries]
-            known = [margin for margin in margins if math.isfinite(margin)]
-            strategy.tell(points, [margin if math.isfinite(margin) else
-                                   max(known, default=0.0) + 1 for margin in margins])
-            least = min(margins)
-            still = 0 if least < best - 1e-4 * abs(best) else still + 1
+            known = [each.margin for each in tries if math.isfinite(each.margin)]
+            bad = max(known, default=0.0) + 1  # of runs that were refused
+            strategy.tell(points, [min(each.margin, bad) for each in tries])
+            least = min(each.margin for each in tries)
+            still = 0 if least < best - 0.01 * abs(best) else still + 1
             best = min(best, least)
 
 
