@@ -72,6 +72,8 @@ class Planted:
         return self.point(index)[0]
 
     def row_of(self, values, hand):
+        usual = {each.name: each.nominal for each in self.quantities if each.nominal is not None}
+        values = {**usual, **values}
         margin = float(self.margin(values, hand))
         return {"index": -1, **values, "distance_m": margin, "margin": margin, "refused": "",
                 "held": margin > 0}

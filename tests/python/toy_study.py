@@ -99,7 +99,7 @@ class ToyStudy:
         return self._row(index, self.values(index))
 
     def row_of(self, values, hand):
-        return self._row(-1, values)
+        return self._row(-1, {**{each.name: each.nominal for each in self.quantities}, **values})
 
     def _row(self, index, values):
         refused = "it stands in a wall" if index == self.refuse and index >= 0 else ""

@@ -83,8 +83,8 @@ def _clock(seconds: float) -> str:
 
 def read_study(file: str, runs: int | None = None) -> Study:
     """The study of a file. runs: in place of its own number. Raises SetupError."""
-    from .plan import read_study as read
-    return read(file, runs)
+    from .plan import load_study
+    return load_study(file, runs=runs)
 
 
 def add_to(commands: Any) -> None:

@@ -263,16 +263,14 @@ def _inside(point: NDArray[Any]) -> NDArray[Any]:
 
 
 def _reduced(study: Study, trying: Search, failure: Try) -> tuple[Try, list[str]]:
-    """The failure with as much as possible set back to what is nominal, of the hand to 0, and the
+    """The failure with as much as possible left as it is in the scene, of the hand at 0, and the
     names of that."""
-    nominal = {each.name: each.nominal for each in study.quantities if each.nominal is not None}
-    at_once = [name for name, value in nominal.items() if failure.values[name] != value]
+    at_once = [each.name for each in study.quantities if each.name in failure.values]
     at_once += [f"hand[{i}]" for i, x in enumerate(failure.hand or []) if x != 0]
     set_back: list[str] = []
 
     def without(names: Sequence[str], of: Try) -> tuple[dict[str, float | str], Hand]:
-        values = {name: nominal[name] if name in names else value
-                  for name, value in of.values.items()}
+        values = {name: value for name, value in of.values.items() if name not in names}
         hand = of.hand and [0.0 if f"hand[{i}]" in names else x for i, x in enumerate(of.hand)]
         return values, hand
 
@@ -339,7 +337,7 @@ def as_text(summary: dict[str, Any]) -> str:
                  f"{number(worst['margin'])}. This is no proof that there is none."]
     lines += _numbers(worst)
     if minimal:
-        lines.append(f"as far set back to nominal as it still fails ({len(minimal['set_back'])} "
+        lines.append(f"set back to the scene as far as it still fails ({len(minimal['set_back'])} "
                      f"numbers, {minimal['runs']} more runs): margin {number(minimal['margin'])}")
         lines += _numbers(minimal)
     if random:

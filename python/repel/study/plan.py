@@ -174,7 +174,7 @@ class Study:
                           for word in _option(name, text)]
         fault = values.get(_FAULT, "none")
         if fault != "none":
-            words.append(f"--fault={fault}@{values[_FAULT_TIME]!r}")
+            words.append(f"--fault={fault}@{values.get(_FAULT_TIME, 0.0)!r}")
         return words
 
     def _made(self, values: Values, table: Any, seconds: float | None = None) -> dict[str, Any]:
