@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Studies: what they draw, what they measure, and what they refuse."""
 
+import json
 import pickle
 import subprocess
 import sys
@@ -40,8 +41,7 @@ def test_a_row_is_a_function_of_study_and_index(tmp_path):
         "index", "scene", "plant_inertia", "laws.default.surface_force", "nearest_wall_m",
         "sampling_energy_j", "margin", "refused", "held"]
     row = study.row(3)
-    assert list(row) == [name for name, _ in study.columns] or set(row) == {
-        name for name, _ in study.columns}
+    assert set(row) == {name for name, _ in study.columns}
     other = pickle.loads(pickle.dumps(study_of(tmp_path, FIRST)))
     other.row(5)
     assert other.row(3) == row
@@ -55,7 +55,6 @@ def test_the_command_of_a_run_makes_the_same_bits(tmp_path, teleop):
     line = study.command(2, str(tmp_path / "replay"))
     report = tmp_path / "report.json"
     subprocess.run([teleop, *line[1:], "--quiet", "--report", report], check=True)
-    import json
     told = json.loads(report.read_text())
     assert told["nearest_wall_m"] == row["nearest_wall_m"]
     assert max(m["sampling_energy_j"] for m in told["modules"]) == row["sampling_energy_j"]
@@ -77,7 +76,7 @@ def test_draws_fill_their_ranges_and_are_the_same_everywhere(tmp_path):
     assert 0.6 <= inertia.min() < 0.61 and 1.69 < inertia.max() <= 1.7
     assert abs(np.mean(np.log(force)) - np.mean(np.log([20, 400]))) < 0.1
     assert abs(np.corrcoef(inertia, force)[0, 1]) < 0.1
-    assert study.values(0)["plant_inertia"] == pytest.approx(1.0416617848474186, abs=0.7)
+    assert study.values(0)["plant_inertia"] == 0.9722714752047603
 
 
 @pytest.mark.parametrize("sampling", ["latin_hypercube", "sobol"])
@@ -150,7 +149,7 @@ def test_a_scene_refused_for_what_was_drawn_is_a_row(tmp_path):
 scenes: [anderson_4x8]
 runs: 40
 seconds: 0.1
-vary: {robot.start.1: {uniform: [40, 52]}}
+vary: {obstacles.table.position.2: {uniform: [0.3, 0.5]}}
 hold: {exit: 0}
 """)
     rows = [study.row(i) for i in range(40)]
@@ -180,7 +179,7 @@ hold: {exit: 0}
     ("nearest_wall_m: {above", "nearest_wall_m: {over", 8, "allowed: above, below, equals"),
     ("{above: -1e-4}", "{above: 1 mm}", 8, "allowed: a number"),
     ("hold: {", "hold: {}\nx: {", 9, "unknown key 'x'"),
-    ("seed: 7", "seed: [", 9, "not YAML"),
+    ("seed: 7", "seed: [", 6, "not YAML"),
 ])
 def test_what_is_wrong_is_refused_with_its_line_before_the_first_run(tmp_path, old, new, line,
                                                                      said):
@@ -188,7 +187,7 @@ def test_what_is_wrong_is_refused_with_its_line_before_the_first_run(tmp_path, o
     with pytest.raises(repel.SetupError) as error:
         study_of(tmp_path, FIRST.replace(old, new))
     assert said in str(error.value)
-    assert error.value.line in (line, line + 1), error.value
+    assert error.value.line == line, error.value
 
 
 def test_a_run_in_process_takes_the_words_of_the_program():

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <repel/scene/build_network.hpp>
+#include <repel/network/modules/kbb2.hpp>
 
 #include <scene/yaml_text.hpp>
 
