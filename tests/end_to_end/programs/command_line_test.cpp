@@ -225,6 +225,51 @@ TEST(CommandLine, ListSaysOfEachSceneWhatItIsAbout) {
   EXPECT_EQ(about["empty"], "A robot in an empty room");
 }
 
+TEST(CommandLine, ListSaysWhichFaultsThereAreAndOfWhichKind) {
+  const Ending ending = teleop("list --faults");
+  EXPECT_EQ(ending.status, 0) << ending;
+  for (const char* line :
+       {"readings    frame frozen\n", "kinematics  pose NaN\n", "clock       clock stopped\n",
+        "drive       drive dead, wrist\n", "operator    device silent\n"}) {
+    EXPECT_TRUE(ending.says(line)) << line << ending;
+  }
+  EXPECT_FALSE(ending.says("brake")) << "no run can have those";
+}
+
+TEST(CommandLine, FaultsAreInjectedReportedAndReplayed) {
+  const Folder folder;
+  const std::string log = quoted(folder / "run.mcap");
+  const std::string report = " --report " + quoted(folder / "report.json");
+  const Ending ending = teleop(
+      "plates --fast --seconds 2 --backend ideal --fault 'frame frozen@1' --fault='pose NaN "
+      "once@0.5' --log " +
+      log + report);
+  EXPECT_EQ(ending.status, 5) << ending;
+  EXPECT_TRUE(ending.says("injected fault         frame frozen (readings), from 1 s on\n"));
+  const nlohmann::json faults = report_of(folder / "report.json").at("faults");
+  const nlohmann::json wanted = {
+      {{"name", "frame frozen"}, {"kind", "readings"}, {"begin_s", 1.0}},
+      {{"name", "pose NaN once"}, {"kind", "kinematics"}, {"begin_s", 0.5}}};
+  EXPECT_EQ(faults, wanted);
+  EXPECT_EQ(report_of(folder / "report.json").at("status_ticks").at("bad_pose"), 1);
+  const Ending replay = teleop("replay " + log + report);
+  EXPECT_EQ(replay.status, 5) << replay;
+  EXPECT_EQ(report_of(folder / "report.json").at("faults"), wanted);
+  EXPECT_EQ(report_of(folder / "report.json").at("replay").at("same"), 800);
+}
+
+TEST(CommandLine, FaultsThatCannotBeHadAreRefused) {
+  expect_complaints(
+      {{"plates --fault 'frozn frame@1'",
+        "teleop: --fault: no fault is called 'frozn frame' (did you mean 'frame frozen', "},
+       {"plates --fault 'frame frozen'", "lacks the time at which it begins"},
+       {"plates --fault 'frame frozen@soon'", "begins at 'soon'; allowed: 0 to 1e+06 s\n"},
+       {"plates --fault 'brake drags, wrist@1'", "allowed of its kind: 'drive dead, shoulder', "},
+       {"delayed --programs two --fault 'hand turns round@1'",
+        "is of the operator, who is in another program", 1},
+       {"site delayed --fault 'frame frozen@1'", "--fault belongs to: teleop run\n"}});
+}
+
 TEST(CommandLine, CheckSaysThatASceneIsSoundAndHowLargeItIs) {
   const std::string count = " [0-9]+ parts, [0-9]+ pairs, ";
   EXPECT_TRUE(std::regex_match(teleop("check empty").out,
