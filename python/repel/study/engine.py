@@ -12,6 +12,7 @@ import contextlib
 import functools
 import importlib.util
 import logging
+import multiprocessing.resource_tracker
 import os
 import pickle
 import queue
@@ -166,7 +167,9 @@ class Cluster:
         self._client: Any = None
         self._threads, self._counted = 0, 0.0
         self._checked = b""
-        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # this says what matters
+        for name in list(logging.root.manager.loggerDict):
+            if name.startswith(("distributed", "tornado")):  # what matters is said by this
+                logging.getLogger(name).setLevel(logging.CRITICAL)
         self._config = needed("dask.config", "dask[distributed]", extra="study").set(_CONFIG)
         self._config.__enter__()
         try:
@@ -181,7 +184,9 @@ class Cluster:
     def _start(self, workers: int) -> None:
         has_pages = importlib.util.find_spec("bokeh") is not None
         # An interrupt from the terminal is this process's to answer. What starts while it is
-        # blocked, and workers that are started later from there, do not get it.
+        # blocked, and workers that are started later from there, do not get it. Python's tracker
+        # of resources would unblock it where it starts, so it starts before.
+        multiprocessing.resource_tracker.ensure_running()
         before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:
             self._cluster = self._dask.LocalCluster(

@@ -3,8 +3,8 @@
 
 A sample of random runs says where the margin is small. From the worst of them an evolution strategy
 (CMA-ES) goes downhill in all numbers at once, each mapped to 0..1 by its scale; words and choices
-stay those of the start. When it stands still, it starts again from the next one. Of the failure that
-it finds, all that it does not need is set back.
+stay those of the start. When it stands still, it starts again from the next one. Of the failure
+that it finds, all that it does not need is set back.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._errors import SetupError, needed
-from .report import is_choice, number, plain, sentence, upper_bound
+from .report import is_choice, number, plain
 from .store import whole
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ class Space:
             here = _scaled(each, float(values[each.name]))
             place.append((here - low) / (high - low) if high > low else 0.5)
         place += [0.5 * (x + 1) for x in hand or [0.0] * self.study.hand_size()]
-        return np.clip(np.array(place, float), 0.0, 1.0)
+        return np.asarray(np.clip(place, 0.0, 1.0))
 
     def run(self, point: NDArray[Any], like: dict[str, float | str]) -> tuple[
             dict[str, float | str], Hand]:
@@ -209,7 +209,9 @@ def search(study: Study, engine: Engine, *, runs: int = 500, seconds: float = ma
     random = Search(study, engine, tick)
     if compare:
         random.evaluate([study.point(first + 500_000 + i) for i in range(trying.made)])
-    minimal, set_back, reduction = None, [], Search(study, engine, tick)
+    minimal: Try | None = None
+    set_back: list[str] = []
+    reduction = Search(study, engine, tick)
     if reduce and trying.worst.is_failure:
         minimal, set_back = _reduced(study, reduction, trying.worst)
     return Found(
@@ -258,8 +260,7 @@ def _descend(space: Space, evaluate: Callable[[Any], list[Try]], start: Try, see
 
 def _inside(point: NDArray[Any]) -> NDArray[Any]:
     """Off the faces of the cube, where half of all steps lead nowhere."""
-    inside: NDArray[Any] = np.clip(point, 0.02, 0.98)
-    return inside
+    return np.asarray(np.clip(point, 0.02, 0.98))
 
 
 def _reduced(study: Study, trying: Search, failure: Try) -> tuple[Try, list[str]]:
@@ -343,8 +344,8 @@ def as_text(summary: dict[str, Any]) -> str:
                      f"numbers, {minimal['runs']} more runs): margin {number(minimal['margin'])}")
         lines += _numbers(minimal)
     if random:
-        lines.append(f"as many random runs: {sentence(random['failed'], 0, random['runs'], upper_bound(random['failed'], random['runs']))} "
-                     f"Least margin {number(random['least_margin'])}.")
+        lines.append(f"as many random runs: {random['failed']} of {random['runs']} did not hold, "
+                     f"least margin {number(random['least_margin'])}")
     return "\n".join(lines)
 
 
