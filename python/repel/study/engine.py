@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes the runs of a study, by Dask on workers or in this process.
 
-Work goes out in batches of about a second and a half by what runs took so far, a few for each
-worker, and their rows come back in any order. Workers may come, go and be killed: what they had is
+Work goes out in batches of a second and a half by what runs took so far, longer ones where many
+workers would otherwise send too many, a few for each worker. Their rows come back in any order. Workers may come, go and be killed: what they had is
 made again. What a batch returns is all that is kept of it, so memory does not grow with the runs.
 """
 
 from __future__ import annotations
 
+import collections
 import contextlib
 import functools
 import importlib.util
@@ -17,6 +18,7 @@ import os
 import pickle
 import queue
 import signal
+import statistics
 import time
 import traceback
 import uuid
@@ -33,17 +35,20 @@ if TYPE_CHECKING:
 #: A run: its index in the study, or the values and the numbers of the hand.
 Job: TypeAlias = "int | tuple[dict[str, float | str], list[float] | None]"
 
-BATCH_S = 1.5  #: [s] that a batch should take
+BATCH_S = 1.5  #: [s] that a batch should take, at least
+BATCHES_PER_S = 30.0  #: that all workers together should send, at most
 IN_FLIGHT = 3  #: batches of each worker: one that runs, and two that wait, so that none idles
 DIED = "the worker died"  #: the refusal of a run that killed its worker each time
 _PIECES = 8  # into which a batch goes that killed its workers
 _POLL_S = 0.5
 _CONNECT_S = 5.0
 
-#: Dask keeps logs and profiles for its own pages; here they would only grow.
+#: Dask keeps logs and profiles for its own pages and looks at itself often; here logs would only
+#: grow, and what it sees has no use.
 _CONFIG = {
     "distributed.admin.log-length": 100, "distributed.admin.low-level-log-length": 100,
     "distributed.admin.system-monitor.log-length": 100,
+    "distributed.admin.system-monitor.interval": "2s", "distributed.admin.tick.interval": "500ms",
     "distributed.diagnostics.computations.max-history": 1,
     "distributed.scheduler.allowed-failures": 2,  # the third death of a worker is the last
     "distributed.scheduler.dashboard.tasks.task-stream-length": 1000,
@@ -243,7 +248,8 @@ class Cluster:
         done: queue.SimpleQueue[Any] = queue.SimpleQueue()
         flying: dict[str, tuple[Any, Sequence[Job]]] = {}
         suspects: list[Sequence[Job]] = []  # killed their workers, or were beside what did
-        start, took, made = 0, BATCH_S, 1.0  # [s] that so many runs took, of late
+        start = 0
+        recent = collections.deque([BATCH_S], 15)  # [s] of a run, in batches of late
 
         def send(batch: Sequence[Job]) -> None:
             future = self._client.submit(_make, pickled, batch, pure=False,
@@ -255,7 +261,8 @@ class Cluster:
             workers = self._workers()
             while start < len(jobs) and len(flying) < IN_FLIGHT * workers:
                 even = -(-(len(jobs) - start) // (IN_FLIGHT * workers))  # so that all end together
-                size = max(1, min(int(BATCH_S * made / took), even))
+                batch_s = max(BATCH_S, workers / BATCHES_PER_S)
+                size = max(1, min(int(batch_s / statistics.median(recent)), even))
                 send(jobs[start:start + size])
                 start += size
             if start == len(jobs) and not flying:
@@ -295,7 +302,7 @@ class Cluster:
             future.release()
             if trouble:
                 raise SetupError(trouble)
-            took, made = 0.8 * took + max(seconds, 1e-6), 0.8 * made + len(batch)
+            recent.append(max(seconds / len(batch), 1e-6))
             yield Made(batch, decoded(text))
 
     def _first_worker(self) -> Iterator[None]:

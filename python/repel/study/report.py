@@ -389,7 +389,8 @@ svg .grid { stroke: var(--rule); stroke-width: 1; }
 svg .zero { stroke: var(--failed); stroke-dasharray: 6 3; }
 svg .dots { stroke-width: 3; stroke-linecap: round; } svg .dots.held { opacity: .45; }
 svg .failed.dots { stroke-width: 5; } .held { stroke: var(--held); }
-.close { stroke: var(--close); } .failed { stroke: var(--failed); } .no { color: var(--failed); font-weight: 600; }
+.close { stroke: var(--close); } .failed { stroke: var(--failed); }
+.no { color: var(--failed); font-weight: 600; }
 .yes { color: var(--good); font-weight: 600; } b.held { color: var(--held); }
 b.close { color: var(--close); } b.failed { color: var(--failed); }
 .wide { overflow-x: auto; } table { border-collapse: collapse; font-size: .9em; }
