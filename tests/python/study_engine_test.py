@@ -119,7 +119,7 @@ def test_a_run_that_kills_its_workers_becomes_a_row(here, tmp_path):
     status, said, complained = here("study", "toy:runs=40,killer=33", "--out", tmp_path,
                                     "--workers", 2)
     assert status == 6
-    assert "run 33: the worker died three times" in complained
+    assert "run 33: the worker died each time" in complained
     rows = parquet.read_table(tmp_path / "results.parquet").to_pylist()
     dead = [row for row in rows if row["refused"]]
     assert [row["index"] for row in dead] == [33] and not dead[0]["held"]

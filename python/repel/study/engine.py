@@ -2,8 +2,9 @@
 """Makes the runs of a study, by Dask on workers or in this process.
 
 Work goes out in batches of a second and a half by what runs took so far, longer ones where many
-workers would otherwise send too many, a few for each worker. Their rows come back in any order. Workers may come, go and be killed: what they had is
-made again. What a batch returns is all that is kept of it, so memory does not grow with the runs.
+workers would otherwise send too many, a few for each worker. Their rows come back in any order.
+Workers may come, go and be killed: what they had is made again. What a batch returns is all that is
+kept of it, so memory does not grow with the runs.
 """
 
 from __future__ import annotations
@@ -52,7 +53,7 @@ _CONFIG = {
     "distributed.diagnostics.computations.max-history": 1,
     "distributed.scheduler.allowed-failures": 2,  # the third death of a worker is the last
     "distributed.scheduler.dashboard.tasks.task-stream-length": 1000,
-    "distributed.worker.profile.enabled": False, "distributed.comm.timeouts.connect": "5s",
+    "distributed.worker.profile.enabled": False,
 }
 
 
@@ -170,7 +171,7 @@ class Cluster:
         self._where = scheduler or "this machine"
         self._cluster: Any = None
         self._client: Any = None
-        self._threads, self._counted = 0, 0.0
+        self._threads, self._counted = -1, 0.0  # of all workers, and when
         self._checked = b""
         for name in list(logging.root.manager.loggerDict):
             if name.startswith(("distributed", "tornado")):  # what matters is said by this
@@ -225,15 +226,17 @@ class Cluster:
         self._config.__exit__(None, None, None)
 
     def _workers(self) -> int:
-        """Threads of all workers, counted once a second. Raises SetupError if the scheduler is
-        gone."""
+        """Threads of all workers, counted once a second; says when there are none. Raises
+        SetupError if the scheduler is gone."""
         if self._client.status == "running":
             if time.monotonic() - self._counted > 1.0:
                 with contextlib.suppress(OSError):
-                    self._threads = sum(self._client.nthreads().values())
+                    before, self._threads = self._threads, sum(self._client.nthreads().values())
                     self._counted = time.monotonic()
+                    if self._threads == 0 and before != 0:
+                        self._say(f"{self._where} has no worker; waiting for one")
             if self._client.status == "running":
-                return self._threads
+                return max(self._threads, 0)
         raise SetupError(f"the scheduler of {self._where} is gone; allowed: the "
                          "address of a running one, or --workers; a study goes on with --resume, "
                          "nothing is lost")
@@ -281,7 +284,7 @@ class Cluster:
                 del flying[future.key]
                 is_alone = start == len(jobs) and not flying
                 if is_alone and len(batch) == 1:
-                    self._say(f"{name_of(batch[0])}: {DIED} three times; it counts as refused")
+                    self._say(f"{name_of(batch[0])}: {DIED} each time; it counts as refused")
                     yield Made(batch, decoded(encoded([_dead(study, batch[0])], study.columns)))
                 else:
                     size = -(-len(batch) // _PIECES)
@@ -306,8 +309,6 @@ class Cluster:
             yield Made(batch, decoded(text))
 
     def _first_worker(self) -> Iterator[None]:
-        if self._workers() == 0:
-            self._say(f"{self._where} has no worker yet; waiting for one")
         while self._workers() == 0:
             time.sleep(_POLL_S)
             yield None

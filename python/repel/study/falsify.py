@@ -9,7 +9,6 @@ that it finds, all that it does not need is set back.
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import json
 import math
@@ -183,7 +182,8 @@ def search(study: Study, engine: Engine, *, runs: int = 500, seconds: float = ma
     seed: of what is random; equal ones find the same wherever it is made. every: go on after the
     first failure. compare: make as many random runs too. reduce: look for a minimal failure. tick:
     takes how many runs are done since it was called, and how many of them failed. Raises SetupError
-    if nothing varies.
+    if nothing varies, KeyboardInterrupt if one comes before the first runs are done; a later one
+    ends the search.
     """
     space = Space(study, seed)
     if not study.quantities and space.size == 0:
@@ -202,10 +202,15 @@ def search(study: Study, engine: Engine, *, runs: int = 500, seconds: float = ma
         return tries
 
     first = _FAR + 1_000_000 * (seed + 1)
-    with contextlib.suppress(_Over):
+    try:
         for restarts, start in enumerate(_starts(study, space, evaluate, first, runs)):
             _descend(space, evaluate, start, seed + 1000 * restarts)
-    assert trying.worst is not None
+    except _Over:
+        pass
+    except KeyboardInterrupt:  # what it has found by then is told
+        compare = reduce = False
+    if trying.worst is None:
+        raise KeyboardInterrupt
     random = Search(study, engine, tick)
     if compare:
         random.evaluate([study.point(first + 500_000 + i) for i in range(trying.made)])
