@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""python -m repel: runs scenes and studies of them, and shows them in the browser."""
+"""python -m repel: runs scenes by the program `teleop`, views them in the browser, studies them."""
 
 import argparse
 import json
 import sys
 
 from . import SetupError, __version__, program, read_recording, run, view
-from .study import command as studies
+from .study import command as study
 
 EPILOGUE = """\
 SCENE is a file, or the name of one that comes with the program. What follows -- goes to the
@@ -34,8 +34,8 @@ def parsed(arguments: list[str] | None) -> argparse.Namespace:
     reading = commands.add_parser("columns", help="list the columns of a log")
     reading.add_argument("file", metavar="FILE")
     commands.add_parser("program", help="print the path of the program")
-    studies.add_to(commands)
-    return parser.parse_args(studies.words(sys.argv[1:] if arguments is None else arguments))
+    study.add_to(commands)
+    return parser.parse_args(study.words(sys.argv[1:] if arguments is None else arguments))
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -48,13 +48,13 @@ def main(arguments: list[str] | None = None) -> int:
             return int(report["exit_status"])
         if chosen.command == "view":
             return view(chosen.scene, chosen.rest, browser=not chosen.no_browser)
-        if hasattr(chosen, "act"):
-            return int(chosen.act(chosen))
         if chosen.command == "columns":
             recording = read_recording(chosen.file)
             print(f"{recording.ticks} ticks", *recording, sep="\n")
-        else:
+        elif chosen.command == "program":
             print(program())
+        else:
+            return int(chosen.act(chosen))
     except SetupError as error:
         print(f"repel: {error}", file=sys.stderr)
         return 1

@@ -20,9 +20,9 @@ import psutil
 import pyarrow.parquet as parquet
 
 from repel import SetupError
-from repel.study import report
+from repel.study import command, report
 from repel.study.store import NotWritten, Store, decoded, encoded, whole
-from toy_study import Bound, Quantity, ToyStudy
+from toy_study import Bound, Quantity, ToyStudy, read_study
 
 TOY = pathlib.Path(__file__).with_name("toy_study.py")
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(
@@ -62,6 +62,20 @@ def workers_of(child):
             if "spawn_main" in " ".join(each.cmdline())]
 
 
+@pytest.fixture
+def here(monkeypatch, capfd):
+    """`repel` in this process."""
+    monkeypatch.setattr(command, "read_study", read_study)
+
+    def repel(*arguments):
+        try:
+            status = command.main([str(each) for each in arguments])
+        except SystemExit as ended:
+            status = ended.code
+        return status, *capfd.readouterr()
+    return repel
+
+
 @pytest.fixture(scope="session")
 def whole_table(tmp_path_factory):
     """The bytes of the table of toy:runs=400,odd=5,refuse=7, made in one process."""
@@ -72,13 +86,20 @@ def whole_table(tmp_path_factory):
     return (folder / "results.parquet").read_bytes()
 
 
-SLOW = "toy:runs=400,odd=5,refuse=7,sleep=0.02"  # the same table
+FAST = "toy:runs=400,odd=5,refuse=7"
+SLOW = FAST + ",sleep=0.02"  # the same table
+
+
+def gone_on_with(folder):
+    """The bytes of the table, and what was said, after a study has gone on in this process."""
+    status, said, complained = repel("study", FAST, "--out", folder, "--workers", 0, "--resume")
+    assert status == 6, complained
+    return (folder / "results.parquet").read_bytes(), complained
 
 
 @pytest.mark.parametrize("workers", [1, 3])
-def test_the_table_is_the_same_on_any_number_of_workers(whole_table, tmp_path, workers):
-    status, said, complained = repel("study", "toy:runs=400,odd=5,refuse=7", "--out", tmp_path,
-                                     "--workers", workers)
+def test_the_table_is_the_same_on_any_number_of_workers(here, whole_table, tmp_path, workers):
+    status, said, complained = here("study", FAST, "--out", tmp_path, "--workers", workers)
     assert status == 6, complained
     assert (tmp_path / "results.parquet").read_bytes() == whole_table
     assert not (tmp_path / "parts").exists()
@@ -94,11 +115,11 @@ def test_runs_of_a_killed_worker_are_made_again(whole_table, tmp_path):
     assert (tmp_path / "results.parquet").read_bytes() == whole_table
 
 
-def test_a_run_that_kills_its_workers_becomes_a_row(tmp_path):
-    status, said, complained = repel("study", "toy:runs=40,killer=33", "--out", tmp_path,
-                                     "--workers", 2)
+def test_a_run_that_kills_its_workers_becomes_a_row(here, tmp_path):
+    status, said, complained = here("study", "toy:runs=40,killer=33", "--out", tmp_path,
+                                    "--workers", 2)
     assert status == 6
-    assert "run 33: the worker died three times" in complained
+    assert "run 33: the worker died each time" in complained
     rows = parquet.read_table(tmp_path / "results.parquet").to_pylist()
     dead = [row for row in rows if row["refused"]]
     assert [row["index"] for row in dead] == [33] and not dead[0]["held"]
@@ -107,35 +128,33 @@ def test_a_run_that_kills_its_workers_becomes_a_row(tmp_path):
 
 
 def test_goes_on_after_the_coordinator_was_killed(whole_table, tmp_path):
-    for _ in range(2):
-        before = len(parts(tmp_path))
-        child = begin("study", SLOW, "--out", tmp_path, "--workers", 2, "--resume")
-        wait_for(lambda: len(parts(tmp_path)) > before, child)  # noqa: B023
-        orphans = workers_of(child)
-        child.kill()
-        end(child)
-        psutil.wait_procs(orphans, timeout=PATIENCE_S)
-        assert not (tmp_path / "results.parquet").exists()
-        found = [i for file in parts(tmp_path)
-                 for i in parquet.read_table(file)["index"].to_pylist()]
-        assert len(found) == len(set(found)) > 0
-    status, said, complained = repel("study", SLOW, "--out", tmp_path, "--workers", 1, "--resume")
-    assert status == 6, complained
-    assert f"{400 - len(found)} of 400 runs are missing" in complained
-    assert (tmp_path / "results.parquet").read_bytes() == whole_table
-
-
-def test_stops_soundly(whole_table, tmp_path):
     child = begin("study", SLOW, "--out", tmp_path, "--workers", 2)
+    wait_for(lambda: len(parts(tmp_path)) > 1, child)
+    orphans = workers_of(child)
+    child.kill()
+    end(child)
+    assert not psutil.wait_procs(orphans, timeout=PATIENCE_S)[1]
+    assert not (tmp_path / "results.parquet").exists()
+    found = [i for file in parts(tmp_path) for i in parquet.read_table(file)["index"].to_pylist()]
+    assert len(found) == len(set(found)) > 0
+    table, complained = gone_on_with(tmp_path)
+    assert f"{400 - len(found)} of 400 runs are missing" in complained
+    assert table == whole_table
+
+
+@pytest.mark.parametrize("workers", [0, 2])
+def test_stops_soundly(whole_table, tmp_path, workers):
+    child = begin("study", SLOW, "--out", tmp_path, "--workers", workers, start_new_session=True)
     wait_for(lambda: parts(tmp_path), child)
-    child.send_signal(signal.SIGTERM)
+    if workers:
+        os.killpg(child.pid, signal.SIGINT)  # as the terminal does
+    else:
+        child.send_signal(signal.SIGTERM)
     status, said, complained = end(child)
     assert status == 4
     assert f"to go on: repel study {SLOW} --out {tmp_path} --resume" in complained
-    assert "Traceback" not in complained
-    status, said, complained = repel("study", SLOW, "--out", tmp_path, "--workers", 0, "--resume")
-    assert status == 6, complained
-    assert (tmp_path / "results.parquet").read_bytes() == whole_table
+    assert len(complained.splitlines()) == 1
+    assert gone_on_with(tmp_path)[0] == whole_table
 
 
 @contextlib.contextmanager
@@ -168,12 +187,11 @@ def test_ends_with_its_scheduler_and_goes_on_without(whole_table, tmp_path):
         scheduler.kill()
         status, said, complained = end(child)
     assert status == 1
-    assert f"the scheduler of {address} is gone; allowed: " in complained
-    assert len(complained.splitlines()) == 1
+    assert complained.splitlines()[-1].startswith(
+        f"repel: the scheduler of {address} is gone; allowed: ")
+    assert "Traceback" not in complained
     assert parts(out) and not (out / "results.parquet").exists()
-    status, said, complained = repel("study", SLOW, "--out", out, "--workers", 0, "--resume")
-    assert status == 6, complained
-    assert (out / "results.parquet").read_bytes() == whole_table
+    assert gone_on_with(out)[0] == whole_table
 
 
 def test_refuses_workers_with_other_versions(tmp_path):
@@ -186,16 +204,16 @@ def test_refuses_workers_with_other_versions(tmp_path):
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense", "carrier://pigeon:1"])
-def test_refuses_a_scheduler_that_is_not_there(tmp_path, address):
-    status, said, complained = repel("study", "toy", "--out", tmp_path, "--scheduler", address)
+def test_refuses_a_scheduler_that_is_not_there(here, tmp_path, address):
+    status, said, complained = here("study", "toy", "--out", tmp_path, "--scheduler", address)
     assert status == 1
     assert complained.startswith(f"repel: --scheduler {address}: ")
     assert "tcp://HOST:8786" in complained and len(complained.splitlines()) == 1
 
 
 @pytest.mark.parametrize("workers", [0, 1])
-def test_a_bug_ends_the_study_and_names_the_run(tmp_path, workers):
-    status, said, complained = repel("study", "toy:bug=7", "--out", tmp_path, "--workers", workers)
+def test_a_bug_ends_the_study_and_names_the_run(here, tmp_path, workers):
+    status, said, complained = here("study", "toy:bug=7", "--out", tmp_path, "--workers", workers)
     assert status == 1
     assert "run 7: ZeroDivisionError: a planted bug (toy_study.py:" in complained
 
@@ -212,28 +230,27 @@ def test_a_full_disk_leaves_what_is_whole(tmp_path):
     assert repel("study", "toy:runs=400", "--out", tmp_path, "--workers", 0, "--resume")[0] == 6
 
 
-def test_exit_statuses_and_what_is_printed(tmp_path):
+def test_exit_statuses_and_what_is_printed(here, tmp_path):
     held = "toy:runs=20,limit=2"
-    status, said, complained = repel("study", held, "--out", tmp_path, "--workers", 0, "--json")
+    status, said, complained = here("study", held, "--out", tmp_path, "--workers", 0, "--json")
     assert status == 0 and json.loads(said) == json.loads((tmp_path / "summary.json").read_text())
-    assert repel("study", held, "--out", tmp_path, "--resume", "--quiet") == (0, "", "")
-    status, said, complained = repel("study", held, "--out", tmp_path)
+    assert here("study", held, "--out", tmp_path, "--resume", "--quiet") == (0, "", "")
+    status, said, complained = here("study", held, "--out", tmp_path)
     assert status == 1 and "allowed: --resume" in complained
-    status, said, complained = repel("study", held + ",seed=2", "--out", tmp_path, "--resume")
+    status, said, complained = here("study", held + ",seed=2", "--out", tmp_path, "--resume")
     assert status == 1 and "another study" in complained
-    status, said, complained = repel("study", held, "--out", tmp_path, "--resume", "--runs", 10)
+    status, said, complained = here("study", held, "--out", tmp_path, "--resume", "--runs", 10)
     assert status == 1 and "has run 19" in complained
-    assert repel("study", held, "--out", tmp_path, "--runs", 0)[0] == 2
-    assert repel("study", held)[0] == 2
-    status, said, complained = repel("study", held, "--out", tmp_path, "--resume", "--runs", 30,
-                                     "--workers", 0)
+    assert here("study", held, "--out", tmp_path, "--runs", 0)[0] == 2
+    assert here("study", held)[0] == 2
+    status, said, complained = here("study", held, "--out", tmp_path, "--resume", "--runs", 30,
+                                    "--workers", 0)
     assert status == 0 and "30 of 30 runs held" in said
 
 
-def test_a_replay_is_the_program_with_the_values(tmp_path):
-    status, said, complained = repel("study", "replay", "toy", 3, "--view")
-    assert (status, said) == (0, "3 --view\n"), complained
-    status, said, complained = repel("study", "replay", "toy", 3, "--print", "--log", "a b.csv")
+def test_a_replay_is_the_program_with_the_values(here):
+    assert here("study", "replay", "toy", 3, "--view") == (0, "3 --view\n", "")
+    status, said, complained = here("study", "replay", "toy", 3, "--print", "--log", "a b.csv")
     assert status == 0 and said.endswith(" 3 --log 'a b.csv'\n")
 
 

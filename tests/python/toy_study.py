@@ -105,7 +105,7 @@ class ToyStudy:
         refused = "it stands in a wall" if index == self.refuse and index >= 0 else ""
         is_empty = refused or (index == self.odd and index >= 0)
         depth = math.nan if is_empty else values["speed"] * (1 + 0.1 * math.log10(values["weight"]))
-        margin = self.bounds[0].margin({"depth_m": depth})
+        margin = self.limit - depth
         return {"index": index, **values, "depth_m": depth, "margin": margin, "refused": refused,
                 "held": margin > 0}
 

@@ -31,7 +31,7 @@ _LINE_S = 10.0  # between lines of progress where there is no terminal
 
 
 class Progress:
-    """How far the runs are, on the standard error: a bar on a terminal, else a line now and then."""
+    """How far the runs are, on standard error: a bar on a terminal, else a line now and then."""
 
     def __init__(self, total: int, done: int = 0, quiet: bool = False):
         """done: of total, runs of before."""
@@ -121,8 +121,8 @@ def add_to(commands: Any) -> None:
     searching.set_defaults(act=_falsify)
     for each in (studying, searching):
         where = each.add_mutually_exclusive_group()
-        where.add_argument("--workers", type=_whole(0), metavar="N", help="processes of this machine "
-                           "(default: as many as processors; 0: in this process)")
+        where.add_argument("--workers", type=_whole(0), metavar="N", help="processes of this "
+                           "machine (default: as many as processors; 0: in this process)")
         where.add_argument("--scheduler", metavar="ADDRESS", help="of Dask, as tcp://HOST:8786")
         each.add_argument("--quiet", action="store_true", help="no progress, no summary")
         each.add_argument("--json", action="store_true", help="print the summary as JSON")

@@ -1,21 +1,25 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes the runs of a study, by Dask on workers or in this process.
 
-Work goes out in batches of about a second and a half by what runs took so far, a few for each
-worker, and their rows come back in any order. Workers may come, go and be killed: what they had is
-made again. What a batch returns is all that is kept of it, so memory does not grow with the runs.
+Work goes out in batches of a second and a half by what runs took so far, longer ones where many
+workers would otherwise send too many, a few for each worker. Their rows come back in any order.
+Workers may come, go and be killed: what they had is made again. What a batch returns is all that is
+kept of it, so memory does not grow with the runs.
 """
 
 from __future__ import annotations
 
+import collections
 import contextlib
 import functools
 import importlib.util
 import logging
+import multiprocessing.resource_tracker
 import os
 import pickle
 import queue
 import signal
+import statistics
 import time
 import traceback
 import uuid
@@ -32,21 +36,24 @@ if TYPE_CHECKING:
 #: A run: its index in the study, or the values and the numbers of the hand.
 Job: TypeAlias = "int | tuple[dict[str, float | str], list[float] | None]"
 
-BATCH_S = 1.5  #: [s] that a batch should take
+BATCH_S = 1.5  #: [s] that a batch should take, at least
+BATCHES_PER_S = 30.0  #: that all workers together should send, at most
 IN_FLIGHT = 3  #: batches of each worker: one that runs, and two that wait, so that none idles
 DIED = "the worker died"  #: the refusal of a run that killed its worker each time
 _PIECES = 8  # into which a batch goes that killed its workers
 _POLL_S = 0.5
 _CONNECT_S = 5.0
 
-#: Dask keeps logs and profiles for its own pages; here they would only grow.
+#: Dask keeps logs and profiles for its own pages and looks at itself often; here logs would only
+#: grow, and what it sees has no use.
 _CONFIG = {
     "distributed.admin.log-length": 100, "distributed.admin.low-level-log-length": 100,
     "distributed.admin.system-monitor.log-length": 100,
+    "distributed.admin.system-monitor.interval": "2s", "distributed.admin.tick.interval": "500ms",
     "distributed.diagnostics.computations.max-history": 1,
     "distributed.scheduler.allowed-failures": 2,  # the third death of a worker is the last
     "distributed.scheduler.dashboard.tasks.task-stream-length": 1000,
-    "distributed.worker.profile.enabled": False, "distributed.comm.timeouts.connect": "5s",
+    "distributed.worker.profile.enabled": False,
 }
 
 
@@ -164,9 +171,11 @@ class Cluster:
         self._where = scheduler or "this machine"
         self._cluster: Any = None
         self._client: Any = None
-        self._threads, self._counted = 0, 0.0
+        self._threads, self._counted = -1, 0.0  # of all workers, and when
         self._checked = b""
-        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # this says what matters
+        for name in list(logging.root.manager.loggerDict):
+            if name.startswith(("distributed", "tornado")):  # what matters is said by this
+                logging.getLogger(name).setLevel(logging.CRITICAL)
         self._config = needed("dask.config", "dask[distributed]", extra="study").set(_CONFIG)
         self._config.__enter__()
         try:
@@ -181,7 +190,9 @@ class Cluster:
     def _start(self, workers: int) -> None:
         has_pages = importlib.util.find_spec("bokeh") is not None
         # An interrupt from the terminal is this process's to answer. What starts while it is
-        # blocked, and workers that are started later from there, do not get it.
+        # blocked, and workers that are started later from there, do not get it. Python's tracker
+        # of resources would unblock it where it starts, so it starts before.
+        multiprocessing.resource_tracker.ensure_running()
         before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:
             self._cluster = self._dask.LocalCluster(
@@ -215,15 +226,17 @@ class Cluster:
         self._config.__exit__(None, None, None)
 
     def _workers(self) -> int:
-        """Threads of all workers, counted once a second. Raises SetupError if the scheduler is
-        gone."""
+        """Threads of all workers, counted once a second; says when there are none. Raises
+        SetupError if the scheduler is gone."""
         if self._client.status == "running":
             if time.monotonic() - self._counted > 1.0:
                 with contextlib.suppress(OSError):
-                    self._threads = sum(self._client.nthreads().values())
+                    before, self._threads = self._threads, sum(self._client.nthreads().values())
                     self._counted = time.monotonic()
+                    if self._threads == 0 and before != 0:
+                        self._say(f"{self._where} has no worker; waiting for one")
             if self._client.status == "running":
-                return self._threads
+                return max(self._threads, 0)
         raise SetupError(f"the scheduler of {self._where} is gone; allowed: the "
                          "address of a running one, or --workers; a study goes on with --resume, "
                          "nothing is lost")
@@ -238,7 +251,8 @@ class Cluster:
         done: queue.SimpleQueue[Any] = queue.SimpleQueue()
         flying: dict[str, tuple[Any, Sequence[Job]]] = {}
         suspects: list[Sequence[Job]] = []  # killed their workers, or were beside what did
-        start, took, made = 0, BATCH_S, 1.0  # [s] that so many runs took, of late
+        start = 0
+        recent = collections.deque([BATCH_S], 15)  # [s] of a run, in batches of late
 
         def send(batch: Sequence[Job]) -> None:
             future = self._client.submit(_make, pickled, batch, pure=False,
@@ -250,7 +264,8 @@ class Cluster:
             workers = self._workers()
             while start < len(jobs) and len(flying) < IN_FLIGHT * workers:
                 even = -(-(len(jobs) - start) // (IN_FLIGHT * workers))  # so that all end together
-                size = max(1, min(int(BATCH_S * made / took), even))
+                batch_s = max(BATCH_S, workers / BATCHES_PER_S)
+                size = max(1, min(int(batch_s / statistics.median(recent)), even))
                 send(jobs[start:start + size])
                 start += size
             if start == len(jobs) and not flying:
@@ -269,7 +284,7 @@ class Cluster:
                 del flying[future.key]
                 is_alone = start == len(jobs) and not flying
                 if is_alone and len(batch) == 1:
-                    self._say(f"{name_of(batch[0])}: {DIED} three times; it counts as refused")
+                    self._say(f"{name_of(batch[0])}: {DIED} each time; it counts as refused")
                     yield Made(batch, decoded(encoded([_dead(study, batch[0])], study.columns)))
                 else:
                     size = -(-len(batch) // _PIECES)
@@ -290,12 +305,10 @@ class Cluster:
             future.release()
             if trouble:
                 raise SetupError(trouble)
-            took, made = 0.8 * took + max(seconds, 1e-6), 0.8 * made + len(batch)
+            recent.append(max(seconds / len(batch), 1e-6))
             yield Made(batch, decoded(text))
 
     def _first_worker(self) -> Iterator[None]:
-        if self._workers() == 0:
-            self._say(f"{self._where} has no worker yet; waiting for one")
         while self._workers() == 0:
             time.sleep(_POLL_S)
             yield None

@@ -3,13 +3,12 @@
 
 A sample of random runs says where the margin is small. From the worst of them an evolution strategy
 (CMA-ES) goes downhill in all numbers at once, each mapped to 0..1 by its scale; words and choices
-stay those of the start. When it stands still, it starts again from the next one. Of the failure that
-it finds, all that it does not need is set back.
+stay those of the start. When it stands still, it starts again from the next one. Of the failure
+that it finds, all that it does not need is set back.
 """
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import json
 import math
@@ -24,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._errors import SetupError, needed
-from .report import is_choice, number, plain, sentence, upper_bound
+from .report import is_choice, number, plain
 from .store import whole
 
 if TYPE_CHECKING:
@@ -111,7 +110,7 @@ class Space:
             here = _scaled(each, float(values[each.name]))
             place.append((here - low) / (high - low) if high > low else 0.5)
         place += [0.5 * (x + 1) for x in hand or [0.0] * self.study.hand_size()]
-        return np.clip(np.array(place, float), 0.0, 1.0)
+        return np.asarray(np.clip(place, 0.0, 1.0))
 
     def run(self, point: NDArray[Any], like: dict[str, float | str]) -> tuple[
             dict[str, float | str], Hand]:
@@ -183,7 +182,8 @@ def search(study: Study, engine: Engine, *, runs: int = 500, seconds: float = ma
     seed: of what is random; equal ones find the same wherever it is made. every: go on after the
     first failure. compare: make as many random runs too. reduce: look for a minimal failure. tick:
     takes how many runs are done since it was called, and how many of them failed. Raises SetupError
-    if nothing varies.
+    if nothing varies, KeyboardInterrupt if one comes before the first runs are done; a later one
+    ends the search.
     """
     space = Space(study, seed)
     if not study.quantities and space.size == 0:
@@ -202,14 +202,21 @@ def search(study: Study, engine: Engine, *, runs: int = 500, seconds: float = ma
         return tries
 
     first = _FAR + 1_000_000 * (seed + 1)
-    with contextlib.suppress(_Over):
+    try:
         for restarts, start in enumerate(_starts(study, space, evaluate, first, runs)):
             _descend(space, evaluate, start, seed + 1000 * restarts)
-    assert trying.worst is not None
+    except _Over:
+        pass
+    except KeyboardInterrupt:  # what it has found by then is told
+        compare = reduce = False
+    if trying.worst is None:
+        raise KeyboardInterrupt
     random = Search(study, engine, tick)
     if compare:
         random.evaluate([study.point(first + 500_000 + i) for i in range(trying.made)])
-    minimal, set_back, reduction = None, [], Search(study, engine, tick)
+    minimal: Try | None = None
+    set_back: list[str] = []
+    reduction = Search(study, engine, tick)
     if reduce and trying.worst.is_failure:
         minimal, set_back = _reduced(study, reduction, trying.worst)
     return Found(
@@ -258,8 +265,7 @@ def _descend(space: Space, evaluate: Callable[[Any], list[Try]], start: Try, see
 
 def _inside(point: NDArray[Any]) -> NDArray[Any]:
     """Off the faces of the cube, where half of all steps lead nowhere."""
-    inside: NDArray[Any] = np.clip(point, 0.02, 0.98)
-    return inside
+    return np.asarray(np.clip(point, 0.02, 0.98))
 
 
 def _reduced(study: Study, trying: Search, failure: Try) -> tuple[Try, list[str]]:
@@ -341,8 +347,8 @@ def as_text(summary: dict[str, Any]) -> str:
                      f"numbers, {minimal['runs']} more runs): margin {number(minimal['margin'])}")
         lines += _numbers(minimal)
     if random:
-        lines.append(f"as many random runs: {sentence(random['failed'], 0, random['runs'], upper_bound(random['failed'], random['runs']))} "
-                     f"Least margin {number(random['least_margin'])}.")
+        lines.append(f"as many random runs: {random['failed']} of {random['runs']} did not hold, "
+                     f"least margin {number(random['least_margin'])}")
     return "\n".join(lines)
 
 

@@ -141,8 +141,9 @@ def _told(study: Study, row: dict[str, Any]) -> dict[str, Any]:
 def sentence(failed: int, refused: int, runs: int, bound: float) -> str:
     """What so many failures prove."""
     of_these = f" ({refused} refused at set-up)" if refused else ""
-    return (f"{runs - failed} of {runs} runs held, {failed} did not{of_these}. With 95 % confidence "
-            f"at most {percent(bound)} of such runs fail, for hands and values drawn like these.")
+    return (f"{runs - failed} of {runs} runs held, {failed} did not{of_these}. With 95 % "
+            f"confidence at most {percent(bound)} of such runs fail, for hands and values drawn "
+            "like these.")
 
 
 def percent(share: float) -> str:
@@ -232,7 +233,7 @@ class Axis:
     """Where values stand between 0 and 1, and what is written there."""
 
     name: str
-    at: Callable[[NDArray[Any]], NDArray[Any]]
+    at: Callable[[Any], NDArray[Any]]
     ticks: list[tuple[float, str]]
 
 
@@ -246,7 +247,7 @@ def axis_of(name: str, values: NDArray[Any], is_log: bool = False) -> Axis:
     forward: Callable[[Any], Any] = np.log10 if is_log else (lambda x: x)
     first, span = forward(low), forward(high) - forward(low)
 
-    def at(x: NDArray[Any]) -> NDArray[Any]:
+    def at(x: Any) -> NDArray[Any]:
         place: NDArray[Any] = (forward(x) - first) / span
         return place
 
@@ -279,7 +280,8 @@ def words_of(name: str, choices: Sequence[Any], values: Sequence[Any]) -> Axis:
 
     def at(words: NDArray[Any]) -> NDArray[Any]:
         beside = np.modf(np.arange(len(words)) * 0.6180339887)[0] - 0.5
-        return np.array([place[word] for word in words.tolist()]) + 0.6 * beside / len(known)
+        middle = np.array([place[word] for word in words.tolist()])
+        return np.asarray(middle + 0.6 * beside / len(known))
 
     return Axis(name, at, [(place[word], str(word)[:14]) for word in known[:12]])
 
@@ -317,7 +319,8 @@ def _dots(kind: str, places: list[tuple[float, float]]) -> str:
 def _line(kind: str, places: list[tuple[float, float]]) -> str:
     if not places:
         return ""
-    return f"<path class='{kind}' d='M" + "L".join(f"{px:.1f} {py:.1f}" for px, py in places) + "'/>"
+    way = "L".join(f"{px:.1f} {py:.1f}" for px, py in places)
+    return f"<path class='{kind}' d='M{way}'/>"
 
 
 def _zero(x: Axis, y: Axis) -> str:
@@ -373,7 +376,8 @@ _STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; color: var(--ink); background: var(--page);
   max-width: 62em; margin: 2em auto; padding: 0 1em; }
 h1 { font-size: 1.6em; margin: 0; } h2 { font-size: 1.15em; margin: 2em 0 .5em; }
-p { margin: .4em 0; overflow-wrap: anywhere; } .soft, figcaption { color: var(--soft); } .says { font-size: 1.15em; }
+p { margin: .4em 0; overflow-wrap: anywhere; } .soft, figcaption { color: var(--soft); }
+.says { font-size: 1.15em; }
 .tiles { display: grid; grid-template-columns: repeat(auto-fill, minmax(10em, 1fr)); gap: .6em;
   margin: 1em 0; } .tiles div { background: var(--tile); border-radius: 6px; padding: .6em .8em; }
 .tiles dt { color: var(--soft); font-size: .85em; } .tiles dd { margin: 0; font-size: 1.15em; }
@@ -384,8 +388,9 @@ svg text { font: 11px system-ui, sans-serif; fill: var(--soft); }
 svg .grid { stroke: var(--rule); stroke-width: 1; }
 svg .zero { stroke: var(--failed); stroke-dasharray: 6 3; }
 svg .dots { stroke-width: 3; stroke-linecap: round; } svg .dots.held { opacity: .45; }
-svg .failed.dots { stroke-width: 5; } .held { stroke: var(--held); } .close { stroke: var(--close); }
-.failed { stroke: var(--failed); } .no { color: var(--failed); font-weight: 600; }
+svg .failed.dots { stroke-width: 5; } .held { stroke: var(--held); }
+.close { stroke: var(--close); } .failed { stroke: var(--failed); }
+.no { color: var(--failed); font-weight: 600; }
 .yes { color: var(--good); font-weight: 600; } b.held { color: var(--held); }
 b.close { color: var(--close); } b.failed { color: var(--failed); }
 .wide { overflow-x: auto; } table { border-collapse: collapse; font-size: .9em; }
@@ -396,9 +401,9 @@ pre { background: var(--tile); padding: 1em; overflow: auto; font-size: .85em; }
   white-space: pre-wrap; } }
 """
 
-_LIMITS = """It says nothing of values outside of what was drawn, nothing of hands that move otherwise,
-nothing of what the simulation leaves out, and what fails more rarely than this share may not be among
-these runs: <code>repel falsify</code> searches for it."""
+_LIMITS = """It says nothing of values outside of what was drawn, nothing of hands that move
+otherwise, nothing of what the simulation leaves out, and what fails more rarely than this share may
+not be among these runs: <code>repel falsify</code> searches for it."""
 
 
 def _text(text: Any) -> str:
@@ -475,8 +480,8 @@ def _what_matters(study: Study, seen: Seen) -> str:
     shown = (f"{len(cloud.margin)} of {seen.runs} runs are drawn: every {stride}th that has a "
              f"margin, and the worst {len(seen.worst)}, so that failures look more frequent than "
              "they are" if stride > 1 else "All runs that have a margin are drawn")
-    legend = (f"<p class='soft'>{shown}. <b class='failed'>Did not hold</b>, <b class='close'>held, "
-              "the closest fifth of those drawn</b>, <b class='held'>held</b>.</p>\n")
+    legend = (f"<p class='soft'>{shown}. <b class='failed'>Did not hold</b>, <b class='close'>"
+              "held, the closest fifth of those drawn</b>, <b class='held'>held</b>.</p>\n")
     text = "<h2>What matters</h2>\n" + legend
     if len(drawn) > 1:
         x, y = drawn[:2]
@@ -521,5 +526,6 @@ def _convergence(seen: Seen) -> str:
 def _where_from(study: Study) -> str:
     versions = ", ".join(f"{name} {version}" for name, version in study.versions.items())
     return (f"<h2>Where it is from</h2>\n<p>{_text(study.file)}, seed {study.seed}; "
-            f"{_text(versions)}<br/><span class='soft'>identity {_text(study.identity)}</span></p>\n"
+            f"{_text(versions)}<br/><span class='soft'>identity {_text(study.identity)}</span>"
+            "</p>\n"
             f"<details><summary>The study file</summary><pre>{_text(study.text)}</pre></details>\n")

@@ -9,6 +9,7 @@ and then renamed, so that whatever ends the process leaves whole files only.
 
 from __future__ import annotations
 
+import array
 import contextlib
 import fcntl
 import os
@@ -169,10 +170,9 @@ class Store:
                              "again", str(file)) from error
 
     @property
-    def missing(self) -> list[int]:
+    def missing(self) -> Sequence[int]:
         """The indices of the runs that are still to make."""
-        found: list[int] = np.flatnonzero(~self._done).tolist()
-        return found
+        return array.array("q", np.flatnonzero(~self._done).tobytes())
 
     @property
     def finished(self) -> bool:
