@@ -82,8 +82,9 @@ class Unbounded(planted.Planted):
     """A number without bounds and one by its logarithm."""
 
     def __init__(self):
-        super().__init__([planted.Number("force", low=None, high=None),
-                          planted.Number("mass", low=0.01, high=100.0, scale="log")], 0, 1)
+        super().__init__([planted.Number("force", low=None, high=None, nominal=10.0),
+                          planted.Number("mass", low=0.01, high=100.0, scale="log",
+                                         nominal=1.0)], 0, 1)
 
     def point(self, index):
         values = planted.np.random.default_rng([1, index])

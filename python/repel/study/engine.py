@@ -23,6 +23,7 @@ import statistics
 import time
 import traceback
 import uuid
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
@@ -195,10 +196,12 @@ class Cluster:
         multiprocessing.resource_tracker.ensure_running()
         before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:
-            self._cluster = self._dask.LocalCluster(
-                n_workers=workers, threads_per_worker=1, processes=True, memory_limit=0,
-                dashboard_address="127.0.0.1:8787" if has_pages else None,
-                silence_logs=logging.CRITICAL)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # another port, which is told below
+                self._cluster = self._dask.LocalCluster(
+                    n_workers=workers, threads_per_worker=1, processes=True, memory_limit=0,
+                    dashboard_address="127.0.0.1:8787" if has_pages else None,
+                    silence_logs=logging.CRITICAL)
             self._client = self._dask.Client(self._cluster, set_as_default=False)
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, before)

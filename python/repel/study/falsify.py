@@ -28,7 +28,8 @@ from .store import whole
 
 if TYPE_CHECKING:
     from .engine import Engine, Job
-    from .plan import Quantity, Study
+    from .plan import Study
+    from .quantities import Quantity
 
 SAMPLE = 0.12  #: of the runs, those that are random
 STARTS = 3  #: from the worst of one random sample, with words and choices that differ
@@ -152,9 +153,9 @@ class Search:
         self.worst: Try | None = None
         self.failed = 0
 
-    def evaluate(self, runs: Sequence[tuple[dict[str, float | str], Hand]]) -> list[Try]:
-        """Makes the runs, in the order given."""
-        jobs: list[Job] = [(values, hand) for values, hand in runs]
+    def evaluate(self, runs: Sequence[Job]) -> list[Try]:
+        """Makes the runs, of values or as the study draws them, in the order given."""
+        jobs = list(runs)
         place = {id(job): i for i, job in enumerate(jobs)}
         rows: list[dict[str, Any]] = [{} for _ in jobs]
         for made in self._engine.made(self._study, jobs):
@@ -162,7 +163,8 @@ class Search:
                 for job, row in zip(made.jobs, made.rows.to_pylist()):
                     rows[place[id(job)]] = row
             self._tick(0 if made is None else len(made.jobs), 0)
-        tries = [Try(values, hand, row) for (values, hand), row in zip(runs, rows)]
+        tries = [Try(*((self._study.values(job), None) if isinstance(job, int) else job), row)
+                 for job, row in zip(jobs, rows)]
         for each in tries:
             self.made += 1
             if self.worst is None or each.margin < self.worst.margin:
@@ -213,7 +215,7 @@ def search(study: Study, engine: Engine, *, runs: int = 500, seconds: float = ma
         raise KeyboardInterrupt
     random = Search(study, engine, tick)
     if compare:
-        random.evaluate([study.point(first + 500_000 + i) for i in range(trying.made)])
+        random.evaluate(range(first + 500_000, first + 500_000 + trying.made))
     minimal: Try | None = None
     set_back: list[str] = []
     reduction = Search(study, engine, tick)

@@ -186,12 +186,12 @@ class Bound:
 
     def margin(self, row: Mapping[str, Any]) -> float:
         """Above 0 it holds; nan: it was not measured."""
-        value = row[self.measure]
+        value: float | str = row[self.measure]
         if isinstance(value, str) or isinstance(self.limit, str):
             return 1.0 if value == self.limit else -1.0
         if self.relation == "equals":
             return 1.0 if value == self.limit else -abs(value - self.limit) / self.scale
-        margin = (value - self.limit) / self.scale
+        margin = (float(value) - self.limit) / self.scale
         return margin if self.relation == "above" else -margin
 
 

@@ -135,7 +135,7 @@ class Study:
         out is that of the scene, a hand that is left out the script."""
         return {**self._made(dict(values), self._table(None, hand)), "index": -1}
 
-    def command(self, which: int | Mapping[str, float | str], folder: str,
+    def command(self, which: int | Mapping[str, float | str], folder: str | os.PathLike[str],
                 hand: Numbers | None = None) -> list[str]:
         """The command line that makes a run again, of an index or of values. Writes the table of
         the hand, if there is one, to `folder`."""

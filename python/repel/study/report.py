@@ -22,7 +22,8 @@ from .._errors import needed
 from .store import GROUP, whole
 
 if TYPE_CHECKING:
-    from .plan import Quantity, Study
+    from .plan import Study
+    from .quantities import Quantity
 
 CONFIDENCE = 0.95
 WORST = 10
