@@ -11,8 +11,10 @@
 #include <vector>
 
 #include <end_to_end/folder.hpp>
+#include <repel/cell/layout.hpp>
 #include <repel/runs/engine/session.hpp>
 #include <repel/runs/faults/injected_faults.hpp>
+#include <repel/schedule/coprocessor.hpp>
 #include <repel/world/kinematics.hpp>
 
 namespace repel::runs {
@@ -137,6 +139,44 @@ TEST(FaultsOfRuns, FindTheJointAndTheWall) {
       EXPECT_TRUE(i != shoulder || J(2, i) * off > 0.0) << "it seems nearer to the table";
     }
   }
+}
+
+/// Unit, from the tool of the first arm to the impassable body that is nearest to it; zero without.
+Vec3 to_wall(const Cell& cell) {
+  NearPair nearest;
+  nearest.separation.distance = 1e3;
+  cell.coprocessor().for_each_near([&](const NearPair& near) {
+    const Pair& pair = cell.world().pair(near.pair);
+    const bool is_of_tool = cell.world().part(pair.a).body == cell.layout(0).tool;
+    if (!is_of_tool || pair.law.passable) return;
+    if (near.separation.distance < nearest.separation.distance) nearest = near;
+  });
+  return -nearest.separation.extraction_W;
+}
+
+TEST(FaultsOfRuns, PushTheHandIntoTheNearestWall) {
+  const std::atomic<bool> stop{false};
+  const scene::Scene scene = scene::load(REPEL_SOURCE "/scenes/storage_tank.yaml");
+  RunOptions wanted = options({}, 12.0);
+  SessionOptions session;
+  double when = -1.0;  // [s]
+  Vec3 inward = Vec3::Zero();
+  session.on_tick = [&](const Cell& cell, std::span<const TickRecord* const> records) {
+    const Vec3 direction = to_wall(cell);
+    if (when >= 0.0 || direction.isZero() || std::abs(direction.z()) > 0.3) return;
+    when = records.front()->time + 1.0 / rate;
+    inward = direction;
+  };
+  const auto run_once = [&] {
+    return run_session(scene, wanted, session, nullptr, stop, stop, [](const Progress&) {});
+  };
+  wanted.rate_hz = rate;
+  (void)run_once();
+  ASSERT_GT(when, 0.0) << "the tool was beside no wall";
+  wanted.faults = {{"hand at 10 m/s", when}};
+  const std::vector<TickRecord> records = run_once().arms.front().records;
+  const TickRecord& at = records[static_cast<std::size_t>(std::lround(when * rate))];
+  EXPECT_LT((at.command.hand.ball.linear - 10.0 * inward).norm(), 1e-12) << when;
 }
 
 TEST(FaultsOfRuns, ALoopThatStandsStillMissesItsTicks) {
