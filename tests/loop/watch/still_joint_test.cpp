@@ -30,7 +30,7 @@ struct Pushed {
     load.at_most = std::abs(load.surely);
     load.dry = 20.0;
     load.effort = 100.0;
-    load.inertia = 4.0;
+    load.inertia = load.free_inertia = 4.0;
     load.elapsed = T;
     const double driven = v + T * load.surely / load.inertia;
     const double lost = T * friction / load.inertia;

@@ -108,6 +108,7 @@ Status JointWatch::compare(const std::vector<double>& q, const std::vector<doubl
     joint.load.at_most = sent_.at_most(i);
     joint.load.dry = model_.links[i].coulomb_friction;
     joint.load.inertia = M(index(i), index(i));
+    joint.load.free_inertia = q[i] == joint.read_q ? free_inertia(i, M) : joint.load.inertia;
     joint.load.elapsed = elapsed;
     joint.load.is_held = held_;
     if (!can_be_true(i, v, M)) found |= status::implausible_joints;
@@ -120,6 +121,20 @@ Status JointWatch::compare(const std::vector<double>& q, const std::vector<doubl
     if (joint.is_stuck) found |= status::frozen_joints;
   }
   return found;
+}
+
+double JointWatch::free_inertia(std::size_t i, const ArmInertia::Matrix& M) noexcept {
+  const Eigen::Index n = index(joints_.size());
+  // A joint at rest is not asked how far it goes.
+  if (std::abs(joints_[i].read_v) <= 0.1 * options_.rate_noise) return M(index(i), index(i));
+  const bool is_sound = factored_.factor(n, [&](Eigen::Index k) {
+    return M.data()[k] * (k % (n + 1) == 0 ? 1.0 + 1e-6 : 1.0);
+  });
+  if (!is_sound) return 0.0;
+  response_.setZero(n);
+  response_(index(i)) = 1.0;
+  factored_.solve(response_);
+  return 1.0 / response_(index(i));
 }
 
 bool JointWatch::can_be_true(std::size_t i, const std::vector<double>& v,

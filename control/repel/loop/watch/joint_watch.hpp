@@ -107,6 +107,10 @@ class JointWatch {
   [[nodiscard]] Status compare(const std::vector<double>& q, const std::vector<double>& v,
                                double elapsed, const ArmInertia::Matrix& M) noexcept;
 
+  // [kg m^2] or [kg] Of a joint while all others give way, by its row of the inverse of M: much
+  // less than M says where axes are nearly in line. Cost: a factorization.
+  [[nodiscard]] double free_inertia(std::size_t i, const ArmInertia::Matrix& M) noexcept;
+
   // By the speed limit and the largest possible acceleration.
   [[nodiscard]] bool can_be_true(std::size_t i, const std::vector<double>& v,
                                  const ArmInertia::Matrix& M) const noexcept;
@@ -130,6 +134,8 @@ class JointWatch {
   MotionAccount account_;
   DriveWatch drive_;
   std::vector<Joint> joints_;
+  network::dense::Factored factored_;
+  Vector response_;             // to a torque on one joint
   std::vector<double> change_;  // [rad/s] of the rates since the last reading
   std::vector<double> read_v_;  // [rad/s] the last finite reading
   Status blind_ = 0U;           // why the readings are not believed

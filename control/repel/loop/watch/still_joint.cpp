@@ -26,7 +26,9 @@ bool StillJoint::step(double q, double v, double last_q, double last_v, const Jo
   }
   const double clear = 0.1 * options.rate_noise;
   if (same_ == 1) {
-    has_moved_ = std::abs(last_v) > clear && shortest_way(last_v, load, options) > 5.0 * step_;
+    // What friction stops on a way too short to tell may be seen to go none.
+    const double told = std::max(5.0 * step_, seen * options.position_noise);
+    has_moved_ = std::abs(last_v) > clear && shortest_way(last_v, load, options) > told;
     moved_at_ = last_v;
   }
   if (is_same) push(load, options);
@@ -123,7 +125,7 @@ double StillJoint::shortest_way(double last_v, const JointLoad& load,
                                 const JointWatchOptions& options) noexcept {
   const double force = 1.5 * load.dry + load.at_most;
   const double v = std::abs(last_v);
-  const double stopping = 0.5 * v * v * load.inertia / (options.mass_uncertainty * force + 1e-12);
+  const double stopping = 0.5 * v * v * load.free_inertia / (options.mass_uncertainty * force + 1e-12);
   return std::min(v * load.elapsed, stopping);
 }
 

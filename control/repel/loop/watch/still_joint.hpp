@@ -18,6 +18,7 @@ struct JointLoad {
   double weight = 0.0;   ///< [N m] gravity torque
   double effort = 0.0;   ///< [N m] limit
   double inertia = 1.0;  ///< [kg m^2] or [kg] of the model
+  double free_inertia = 1.0;  ///< [kg m^2] or [kg] while all other joints give way
   double elapsed = 0.0;  ///< [s]
   bool is_held = false;  ///< by a brake
 };
