@@ -15,7 +15,6 @@
 namespace repel::faults {
 namespace {
 
-constexpr double latest = 1e6;                  // [s]
 constexpr std::string_view between_two = "; ";  // no name has it
 
 std::string in_small_letters(std::string text) {
@@ -102,10 +101,11 @@ Choice choice_in(const std::string& text) {
   (void)fault_named(choice.name);
   const char* const end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data() + at + 1, end, choice.begin);
-  if (error != std::errc() || rest != end || !(choice.begin >= 0.0 && choice.begin <= latest)) {
+  if (error != std::errc() || rest != end ||
+      !(choice.begin >= 0.0 && choice.begin <= latest_begin)) {
     throw SetupError("the fault " + in_quotes(choice.name) + " begins at " +
-                     in_quotes(text.substr(at + 1)) + "; allowed: 0 to " + repel::to_text(latest) +
-                     " s");
+                     in_quotes(text.substr(at + 1)) + "; allowed: 0 to " +
+                     repel::to_text(latest_begin) + " s");
   }
   return choice;
 }

@@ -11,10 +11,12 @@ namespace repel::faults {
 
 struct Fault;
 
+inline constexpr double latest_begin = 1e6;  ///< [s] of a fault
+
 /// A fault to inject, and when it begins.
 struct Choice {
   std::string name;    ///< of one of `all_faults`
-  double begin = 0.0;  ///< [s] of scene time, 0 to 1e6; it acts from the nearest tick on
+  double begin = 0.0;  ///< [s] of scene time, 0 to latest_begin; it acts from the nearest tick on
 };
 
 /// A run of a scene can have it; whether its arm has the joints for it is another matter.

@@ -23,7 +23,6 @@ namespace repel::faults {
 template <class T>
 class Past {
  public:
-  Past() = default;
   /// @param most that are kept, 1 or more @param like what has their size
   Past(std::size_t most, const T& like) : values_(most, like) {}
 
@@ -92,7 +91,6 @@ struct Exchange {
   network::Command command;  ///< class operator
   Vec3 inward{0, 0, 0};      ///< unit, into the wall
 
-  Exchange() = default;
   /// Of an arm that begins at rest. Faults of it allocate nothing.
   /// @param start [rad] or [m] @param tick [s] its period @param delay [ticks] of its drive, as
   /// told

@@ -87,7 +87,7 @@ InjectedFaults::InjectedFaults(std::span<const Choice> choices, const ArmDescrip
       throw SetupError("the fault '" + choice.name +
                        "' is one of two joints; allowed: with an arm that has them");
     }
-    checked("begin of the fault '" + choice.name + "'", choice.begin, 0.0, 1e6, "s");
+    checked("begin of the fault '" + choice.name + "'", choice.begin, 0.0, latest_begin, "s");
     // The drive is late outside of what is spoilt: see make_arms.
     Exchange x(start_, period_, 0);
     x.random.seed(1 + all_.size());
@@ -156,6 +156,7 @@ void InjectedFaults::spoil(ArmReadings& readings) noexcept {
 
 void InjectedFaults::spoil(network::Command& command) noexcept {
   for (Injected& each : all_) {
+    if (each.fault->kind != Kind::operators) continue;
     each.x.command = command;
     each.fault->act(Kind::operators, each.x);
     command = each.x.command;
