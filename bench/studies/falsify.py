@@ -160,7 +160,7 @@ def main():
                        f"bench/studies/falsify.py --seeds {chosen.seeds} --write "
                        "bench/results/falsify.md")
         text = [f"Found: a failure within {RUNS} runs, where the row names no other number. The "
-                "percentage is the share of random runs", "that fail.", ""]
+                "percentage is", "the share of random runs that fail.", ""]
         pathlib.Path(chosen.write).write_text("\n".join([*head, *text, *lines]) + "\n")
 
 

@@ -8,6 +8,7 @@ workers at which the coordinator has no time left. Needs the package with its ex
 """
 
 import argparse
+import os
 import pathlib
 import tempfile
 
@@ -30,6 +31,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="5 s of each instead of 20 s")
     parser.add_argument("--write", metavar="FILE", help="write the tables as Markdown")
     chosen = parser.parse_args()
+    load = os.getloadavg()[0]
     seconds = 5 if chosen.quick else 20
     lines = ["| workers | a run | runs | runs/s | busy | batches | coordinator, of a processor | "
              "for a batch |", "|--:|--:|--:|--:|--:|--:|--:|--:|"]
@@ -57,10 +59,10 @@ def main():
         head = heading("# Workers that a study keeps busy",
                        "bench/studies/scale.py " + "--quick " * chosen.quick
                        + "--write bench/results/studies.md")
-        text = ["Runs that only wait. Busy: the share of the workers' time in runs. What else they "
-                "do, and the", "coordinator, takes the processors of this machine: of runs of a "
-                "millisecond about a tenth of one", "for each worker. The coordinator is one "
-                "process with Dask's scheduler, which also writes the", "table.", ""]
+        text = ["Runs that only wait. Busy: the workers' share of time in runs. The coordinator "
+                "is", "one process with Dask's scheduler, which also writes the table. Workers and "
+                "coordinator", "share the processors of this machine with what else ran: a load of "
+                f"{load:.1f} before the first.", ""]
         pathlib.Path(chosen.write).write_text("\n".join([*head, *text, *lines]) + "\n")
 
 

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 Job: TypeAlias = "int | tuple[dict[str, float | str], list[float] | None]"
 
 BATCH_S = 1.5  #: [s] that a batch should take, at least
+SHORT_S = 0.2  #: [s] of a batch at the end, where what is left is divided evenly, at least
 BATCHES_PER_S = 30.0  #: that all workers together should send, at most
 IN_FLIGHT = 3  #: batches of each worker: one that runs, and two that wait, so that none idles
 DIED = "the worker died"  #: the refusal of a run that killed its worker each time
@@ -197,7 +198,7 @@ class Cluster:
         before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # another port, which is told below
+                warnings.simplefilter("ignore")  # of a port that is taken; it takes another one
                 self._cluster = self._dask.LocalCluster(
                     n_workers=workers, threads_per_worker=1, processes=True, memory_limit=0,
                     dashboard_address="127.0.0.1:8787" if has_pages else None,
@@ -266,11 +267,12 @@ class Cluster:
         while True:
             workers = self._workers()
             while start < len(jobs) and len(flying) < IN_FLIGHT * workers:
+                run_s = statistics.median(recent)
                 even = -(-(len(jobs) - start) // (IN_FLIGHT * workers))  # so that all end together
-                batch_s = max(BATCH_S, workers / BATCHES_PER_S)
-                size = max(1, min(int(batch_s / statistics.median(recent)), even))
-                send(jobs[start:start + size])
-                start += size
+                most = int(max(BATCH_S, workers / BATCHES_PER_S) / run_s)
+                some = jobs[start:start + max(1, min(most, max(even, int(SHORT_S / run_s))))]
+                send(some)
+                start += len(some)
             if start == len(jobs) and not flying:
                 if not suspects:
                     return
