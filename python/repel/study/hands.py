@@ -19,8 +19,8 @@ from .quantities import draws
 #: The columns of a table of a hand, see `teleop run --hand`.
 COLUMNS = ("time_s", "vx_m_s", "vy_m_s", "vz_m_s", "wx_rad_s", "wy_rad_s", "wz_rad_s")
 LEVER_COLUMNS = ("lever_rad_s", "direction_x", "direction_y", "direction_z")
-#: Of the numbers by which a hand is searched, for each of its axes.
-_SEARCHED = 6
+#: Knots by which a hand of so many axes is searched: with many numbers, few runs find nothing.
+_SEARCHED = {3: 4, 6: 3}
 _ROWS_A_KNOT = 10
 
 
@@ -79,7 +79,7 @@ class RandomHand:
 
     def size(self, seconds: float) -> int:
         """How many numbers the search has."""
-        return self.axes * min(_SEARCHED, self.knots(seconds))
+        return self.axes * min(_SEARCHED[self.axes], self.knots(seconds))
 
     def limited(self, knots: np.ndarray, seconds: float) -> np.ndarray:
         step = seconds / max(1, len(knots) - 3)

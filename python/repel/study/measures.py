@@ -37,7 +37,7 @@ def _share(report: Mapping[str, Any], counts: Callable[[str], bool]) -> float:
 OF_REPORT: dict[str, Callable[[Mapping[str, Any]], float]] = {
     "exit": lambda report: float(report["exit_status"]),
     "sampling_energy_j": _sampling_energy,
-    "chatter_n": lambda report: float(report["chatter"]["walls"]["force_rms_n"]),
+    "chatter_n": lambda report: of_report(report, "chatter.walls.force_rms_n"),
     "fault_share": lambda report: _share(report, lambda name: name not in _DEMANDS),
     "limit_share": lambda report: _share(report, lambda name: name in _LIMITS),
 }
