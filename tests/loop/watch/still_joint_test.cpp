@@ -81,6 +81,26 @@ TEST(StillJoint, AFrozenEncoderIsFoundBeforeTheJointHasGoneFar) {
   }
 }
 
+// At 100 Hz the wrist of a light arm was called frozen: friction stops it at once where the joints
+// in line with it give way.
+TEST(StillJoint, AJointThatFrictionStopsAtOnceIsNotFrozen) {
+  const auto is_frozen = [](double free_inertia) {
+    StillJoint still;
+    JointLoad load{.surely = 0.4,
+                   .at_most = 0.4,
+                   .dry = 1.0,
+                   .effort = 50.0,
+                   .inertia = 0.43,
+                   .free_inertia = free_inertia,
+                   .elapsed = 0.005};
+    (void)still.step(0.0, 0.055, -2e-4, 0.055, load, {});
+    (void)still.step(0.0, 0.0, 0.0, 0.055, load, {});
+    return still.step(0.0, 0.0, 0.0, 0.0, load, {});
+  };
+  EXPECT_FALSE(is_frozen(0.02));
+  EXPECT_TRUE(is_frozen(0.43)) << "this one would have gone on";
+}
+
 // It was called frozen whenever it crept: its steps were coarser than was told.
 TEST(StillJoint, TheStepsOfACoarseEncoderAreLearned) {
   Pushed joint(10.0);

@@ -127,9 +127,8 @@ double JointWatch::free_inertia(std::size_t i, const ArmInertia::Matrix& M) noex
   const Eigen::Index n = index(joints_.size());
   // A joint at rest is not asked how far it goes.
   if (std::abs(joints_[i].read_v) <= 0.1 * options_.rate_noise) return M(index(i), index(i));
-  const bool is_sound = factored_.factor(n, [&](Eigen::Index k) {
-    return M.data()[k] * (k % (n + 1) == 0 ? 1.0 + 1e-6 : 1.0);
-  });
+  const bool is_sound = factored_.factor(
+      n, [&](Eigen::Index k) { return M.data()[k] * (k % (n + 1) == 0 ? 1.0 + 1e-6 : 1.0); });
   if (!is_sound) return 0.0;
   response_.setZero(n);
   response_(index(i)) = 1.0;

@@ -125,7 +125,8 @@ double StillJoint::shortest_way(double last_v, const JointLoad& load,
                                 const JointWatchOptions& options) noexcept {
   const double force = 1.5 * load.dry + load.at_most;
   const double v = std::abs(last_v);
-  const double stopping = 0.5 * v * v * load.free_inertia / (options.mass_uncertainty * force + 1e-12);
+  const double stopping =
+      0.5 * v * v * load.free_inertia / (options.mass_uncertainty * force + 1e-12);
   return std::min(v * load.elapsed, stopping);
 }
 

@@ -79,9 +79,9 @@ void describe_changes(CLI::App& app, RunChoice& c) {
            }
            return true;
          },
-         "A value of the scene file, as laws.wall.damping='80 N s/m'; may be given often "
-         "(scenes/README.md)")
-      ->type_name("PATH=VALUE")
+         "PATH=VALUE, another value than that of the scene file, as laws.wall.damping='80 N s/m'; "
+         "may be repeated (scenes/README.md)")
+      ->type_name("CHANGE")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->allow_extra_args(false);
 }
