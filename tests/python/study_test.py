@@ -144,6 +144,14 @@ def test_functions_of_the_log_are_measured(tmp_path):
     assert row["wall_force_n"] >= 0.0
 
 
+def test_the_margin_is_that_of_the_least_bound_that_has_a_measure_of_how_well(tmp_path):
+    bounds = FIRST.replace("hold: {", "hold: {exit: 0, ")
+    row, graded = study_of(tmp_path, bounds).row(0), study_of(tmp_path, FIRST).row(0)
+    assert row["margin"] == graded["margin"] > 0
+    failing = study_of(tmp_path, bounds.replace("exit: 0", "exit: 3")).row(0)
+    assert failing["margin"] == -1.0 and not failing["held"]
+
+
 def test_a_scene_refused_for_what_was_drawn_is_a_row(tmp_path):
     study = study_of(tmp_path, """
 scenes: [anderson_4x8]

@@ -34,7 +34,7 @@ def _share(report: Mapping[str, Any], counts: Callable[[str], bool]) -> float:
 
 
 #: Of the report, beside its keys.
-OF_REPORT: dict[str, Callable[[Mapping[str, Any]], float]] = {
+OF_REPORT: dict[str, Callable[[Mapping[str, Any]], float | str]] = {
     "exit": lambda report: float(report["exit_status"]),
     "sampling_energy_j": _sampling_energy,
     "chatter_n": lambda report: of_report(report, "chatter.walls.force_rms_n"),

@@ -188,9 +188,17 @@ class Study:
             row.update({each.name: "" for each in self._measures if each.is_word})
             return {**row, "refused": str(error), "held": False}
         row.update(measured)
-        margins = [bound.margin(row) for bound in self.bounds]
-        least = math.nan if any(map(math.isnan, margins)) else min(margins)
+        least = self._margin(row)
         return {**row, "margin": least, "refused": "", "held": least > 0.0}
+
+    def _margin(self, row: Mapping[str, Any]) -> float:
+        """The least of the bounds. An equality that holds says nothing of how well."""
+        margins = [bound.margin(row) for bound in self.bounds]
+        graded = [margin for bound, margin in zip(self.bounds, margins)
+                  if bound.relation != "equals"]
+        if any(map(math.isnan, margins)):
+            return math.nan
+        return min(margins) if min(margins) <= 0.0 else min(graded or margins)
 
     def _measured(self, values: Values, table: Any, seconds: float) -> dict[str, Any]:
         hands = [table] if len(table) > 0 else []

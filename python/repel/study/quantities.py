@@ -87,8 +87,10 @@ class Quantity:
         """What the value sets: paths, and texts as a scene file has them."""
         if self.cases:
             return self.cases[self.choices.index(value)]
-        text = value if isinstance(value, str) else f"{value!r} {self.unit}".rstrip()
-        return ((self.name, text),)
+        if isinstance(value, str):
+            return ((self.name, value),)
+        number = str(int(value)) if value.is_integer() else repr(value)  # some keys are whole
+        return ((self.name, f"{number} {self.unit}".rstrip()),)
 
 
 def quantity_of(entry: Entry) -> Quantity:
