@@ -11,16 +11,16 @@ namespace repel {
 
 /// Bounds of the torques on a joint between two readings. Forces for a prismatic joint.
 struct JointLoad {
-  double surely = 0.0;   ///< [N m] lower bound of the net torque over all delays of the drive;
-                         ///< signed
-  double at_most = 0.0;  ///< [N m] upper bound of its magnitude
-  double dry = 0.0;      ///< [N m] dry friction of the model
-  double weight = 0.0;   ///< [N m] gravity torque
-  double effort = 0.0;   ///< [N m] limit
-  double inertia = 1.0;  ///< [kg m^2] or [kg] of the model
+  double surely = 0.0;        ///< [N m] lower bound of the net torque over all delays of the drive;
+                              ///< signed
+  double at_most = 0.0;       ///< [N m] upper bound of its magnitude
+  double dry = 0.0;           ///< [N m] dry friction of the model
+  double weight = 0.0;        ///< [N m] gravity torque
+  double effort = 0.0;        ///< [N m] limit
+  double inertia = 1.0;       ///< [kg m^2] or [kg] of the model
   double free_inertia = 1.0;  ///< [kg m^2] or [kg] while all other joints give way
-  double elapsed = 0.0;  ///< [s]
-  bool is_held = false;  ///< by a brake
+  double elapsed = 0.0;       ///< [s]
+  bool is_held = false;       ///< by a brake
 };
 
 /// Decides by the torques on a joint while it reports the same position, bit for bit. Friction is
