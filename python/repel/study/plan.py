@@ -255,7 +255,9 @@ class Study:
             except SetupError as error:
                 what = next(iter(values))
                 entry = keys["vary"].entries()[what]
-                entry.fail(f"{what} of {name} set to {values[what]}: {error}")
+                others = "" if "." in what else (
+                    f" (or an option of a run: {', '.join([*_OPTIONS, *_FLAGS, 'rate'])})")
+                entry.fail(f"{what} of {name} set to {values[what]}: {error}{others}")
 
     def _require_measured(self, report: Mapping[str, Any], keys: Mapping[str, Entry]) -> None:
         checked = []
@@ -272,7 +274,9 @@ class Study:
         digest = hashlib.blake2b(digest_size=16)
         files = [path_of(scene) for _, scene in self.scenes]
         files += [_repel.load_scene(file).robot for file in list(files)]
-        parts = [self.text, str(self.runs), _version(), repr(self._hand.table)]
+        # More runs leave those that are drawn by themselves as they are.
+        runs = "" if self.sampling == "random" else str(self.runs)
+        parts = [self.text, runs, _version(), repr(self._hand.table)]
         parts += [each.source for each in self._measures]
         for file in files:
             with open(file, "rb") as contents:
