@@ -93,7 +93,7 @@ TEST(StillJoint, AJointThatFrictionStopsAtOnceIsNotFrozen) {
                    .inertia = 0.43,
                    .free_inertia = free_inertia,
                    .elapsed = 0.005};
-    (void)still.step(0.0, 0.055, -2e-4, 0.055, load, {});
+    (void)still.step(0.0, 0.055, -1e-6, 0.055, load, {});
     (void)still.step(0.0, 0.0, 0.0, 0.055, load, {});
     return still.step(0.0, 0.0, 0.0, 0.0, load, {});
   };
