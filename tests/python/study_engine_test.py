@@ -88,6 +88,7 @@ def whole_table(tmp_path_factory):
 
 FAST = "toy:runs=400,odd=5,refuse=7"
 SLOW = FAST + ",sleep=0.02"  # the same table
+ENDLESS = FAST + ",sleep=0.3"  # likewise; on a busy machine, too, it is ended before it is over
 
 
 def gone_on_with(folder):
@@ -128,7 +129,7 @@ def test_a_run_that_kills_its_workers_becomes_a_row(here, tmp_path):
 
 
 def test_goes_on_after_the_coordinator_was_killed(whole_table, tmp_path):
-    child = begin("study", SLOW, "--out", tmp_path, "--workers", 2)
+    child = begin("study", ENDLESS, "--out", tmp_path, "--workers", 2)
     wait_for(lambda: len(parts(tmp_path)) > 1, child)
     orphans = workers_of(child)
     child.kill()
@@ -144,7 +145,7 @@ def test_goes_on_after_the_coordinator_was_killed(whole_table, tmp_path):
 
 @pytest.mark.parametrize("workers", [0, 2])
 def test_stops_soundly(whole_table, tmp_path, workers):
-    child = begin("study", SLOW, "--out", tmp_path, "--workers", workers, start_new_session=True)
+    child = begin("study", ENDLESS, "--out", tmp_path, "--workers", workers, start_new_session=True)
     wait_for(lambda: parts(tmp_path), child)
     if workers:
         os.killpg(child.pid, signal.SIGINT)  # as the terminal does
@@ -152,7 +153,7 @@ def test_stops_soundly(whole_table, tmp_path, workers):
         child.send_signal(signal.SIGTERM)
     status, said, complained = end(child)
     assert status == 4
-    assert f"to go on: repel study {SLOW} --out {tmp_path} --resume" in complained
+    assert f"to go on: repel study {ENDLESS} --out {tmp_path} --resume" in complained
     said = [line for line in complained.splitlines() if "dashboard: " not in line]
     assert len(said) == 1
     assert gone_on_with(tmp_path)[0] == whole_table
@@ -183,7 +184,7 @@ def dask(folder, environment):
 def test_ends_with_its_scheduler_and_goes_on_without(whole_table, tmp_path):
     out = tmp_path / "out"
     with dask(tmp_path, ENVIRONMENT) as (address, scheduler, worker):
-        child = begin("study", SLOW, "--out", out, "--scheduler", address)
+        child = begin("study", ENDLESS, "--out", out, "--scheduler", address)
         wait_for(lambda: parts(out), child)
         scheduler.kill()
         status, said, complained = end(child)
