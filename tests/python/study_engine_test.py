@@ -30,9 +30,15 @@ ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(
 PATIENCE_S = 120  # after which something hangs
 
 
+def hear_interrupts():
+    """What a shell has started in the background, as this may be, ignores them."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def begin(*arguments, **how):
     return subprocess.Popen([sys.executable, TOY, *map(str, arguments)], stdout=subprocess.PIPE,
-                            stderr=subprocess.PIPE, text=True, env=ENVIRONMENT, **how)
+                            stderr=subprocess.PIPE, text=True, env=ENVIRONMENT,
+                            preexec_fn=hear_interrupts, **how)
 
 
 def end(child):
