@@ -18,6 +18,7 @@ def heading(title, command):
                             capture_output=True, text=True, check=False).stdout.strip()
     cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo", encoding="utf-8")
                 if line.startswith("model name")), platform.machine())
-    return ["<!-- SPDX-License-Identifier: BSD-3-Clause -->", "", title, "", f"`{command}`,",
+    # In two pieces, for who looks for the licence of this file.
+    return ["<!-- SPDX-" "License-Identifier: BSD-3-Clause -->", "", title, "", f"`{command}`,",
             f"{cpu}, {os.cpu_count()} processors, Python {platform.python_version()}, Dask "
             f"{dask.__version__}, NumPy {numpy.__version__}, commit {commit or 'unknown'}.", ""]
