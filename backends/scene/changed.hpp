@@ -15,7 +15,7 @@ namespace repel::scene {
 /// The document with these values in place of its own, one after the other; aliases of what is
 /// changed keep what they had. Time and memory are linear in the lengths of the paths and of the
 /// lists and maps on them.
-/// @throws SetupError naming the path and what is allowed, where it leads nowhere
+/// @throws SetupError for a path that leads nowhere, naming it and what is allowed
 [[nodiscard]] std::shared_ptr<const Document> changed(std::shared_ptr<const Document> document,
                                                       std::span<const Change> changes);
 

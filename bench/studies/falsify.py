@@ -159,8 +159,8 @@ def main():
         head = heading("# Search against random runs",
                        f"bench/studies/falsify.py --seeds {chosen.seeds} --write "
                        "bench/results/falsify.md")
-        text = [f"Found: a failure within {RUNS} runs, where the row names no other number. The "
-                "percentage is", "the share of random runs that fail.", ""]
+        text = [f"Budget: {RUNS} runs unless the row says otherwise. The percentage is the failure",
+                "rate of random runs.", ""]
         pathlib.Path(chosen.write).write_text("\n".join([*head, *text, *lines]) + "\n")
 
 

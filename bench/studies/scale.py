@@ -60,7 +60,7 @@ def main():
                        "bench/studies/scale.py " + "--quick " * chosen.quick
                        + "--write bench/results/studies.md")
         text = ["Runs that only wait. Busy: the workers' share of time in runs. The coordinator "
-                "is", "one process with Dask's scheduler, which also writes the table. Workers and "
+                "is", "one process: Dask's scheduler, and the writer of the table. Workers and "
                 "coordinator", "share the processors of this machine with what else ran: a load of "
                 f"{load:.1f} before the first.", ""]
         pathlib.Path(chosen.write).write_text("\n".join([*head, *text, *lines]) + "\n")
