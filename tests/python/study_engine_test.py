@@ -35,10 +35,10 @@ def hear_interrupts():
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-def begin(*arguments, preexec_fn=hear_interrupts):
+def begin(*arguments, **how):
+    how.setdefault("preexec_fn", hear_interrupts)
     return subprocess.Popen([sys.executable, TOY, *map(str, arguments)], stdout=subprocess.PIPE,
-                            stderr=subprocess.PIPE, text=True, env=ENVIRONMENT,
-                            preexec_fn=preexec_fn)
+                            stderr=subprocess.PIPE, text=True, env=ENVIRONMENT, **how)
 
 
 def end(child):
