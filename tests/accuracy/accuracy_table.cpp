@@ -162,6 +162,9 @@ std::string promised() {
 
 std::string page_of(const Table& table, int samples) {
   std::string page =
+      // In two pieces, for who looks for the licence of this file.
+      "<!-- SPDX-"
+      "License-Identifier: BSD-3-Clause -->\n\n"
       "# Accuracy\n\n"
       "Measured errors of `separation` for every pair of shapes. This page is written by\n"
       "`accuracy_table --measure " +

@@ -5,8 +5,14 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
 
+#include <repel/distance/cylinder_foot.hpp>
 #include <repel/distance/gap.hpp>
 #include <repel/distance/query.hpp>
 #include <repel/distance/simplex.hpp>
@@ -26,7 +32,12 @@ template <class T>
 class Gjk {
  public:
   Gjk(const Convex& A, const Pose& X_WA, const Convex& B, const Pose& X_WB) noexcept
-      : A_(A), B_(B), X_WA_(X_WA), X_WB_(X_WB), named_exactly_(A.is_polytope() && B.is_polytope()) {
+      : A_(A),
+        B_(B),
+        X_WA_(X_WA),
+        X_WB_(X_WB),
+        named_exactly_(A.is_polytope() && B.is_polytope()),
+        round_(round_of(A, B)) {
     const Vec<T> p_WA = column<T>(X_WA, 3);
     p_AB_ = column<T>(X_WB, 3) - p_WA;
     const double size = A.reach() + B.reach() + norm(to_vec3(p_AB_));
@@ -45,6 +56,14 @@ class Gjk {
   }
 
  private:
+  [[nodiscard]] static const Convex* round_of(const Convex& A, const Convex& B) noexcept {
+    const auto is_round = [](const Convex& set) {
+      return set.kind() == Convex::Kind::cylinder && !set.is_polytope();
+    };
+    if (is_round(A) && B.is_polytope()) return &A;
+    return is_round(B) && A.is_polytope() ? &B : nullptr;
+  }
+
   static constexpr double epsilon(double) noexcept { return 0x1p-52; }
   static constexpr double epsilon(DoubleDouble) noexcept { return 0x1p-98; }
 
@@ -85,22 +104,26 @@ class Gjk {
     const T tolerance(options.tolerance);
     bool separated = false;
     while (!encloses_) {
-      const T length = sqrt_of(simplex_.vv());
-      if (length <= T(margin_)) return QueryEnd::touching;
+      by_foot_ = false;
+      if (sqrt_of(simplex_.vv()) <= T(margin_)) return QueryEnd::touching;
       if (iterations_ >= options.iterations) return QueryEnd::budget_spent;
-      const DifferencePoint<T> w = support(simplex_.v());
+      by_foot_ = find_foot();
+      const Vec<T> v = by_foot_ ? foot_.v : simplex_.v();
+      const T vv = by_foot_ ? dot(v, v) : simplex_.vv();
+      const T length = sqrt_of(vv);
+      const DifferencePoint<T> w = support(v);
       ++iterations_;
-      const T vw = dot(simplex_.v(), w.w);
+      const T vw = dot(v, w.w);
       const double below = static_cast<double>(vw / length) - margin_;
       gap.lower = std::max(gap.lower, below);
       separated = separated || below > margin_;
       if (below > options.ignore_beyond) return QueryEnd::far_apart;
-      const T slack = simplex_.vv() - vw;
-      if (slack <= tolerance * simplex_.vv() || slack <= T(0.25 * margin_) * length) break;
+      const T slack = vv - vw;
+      if (slack <= tolerance * vv || slack <= T((by_foot_ ? 0.5 : 0.25) * margin_) * length) break;
       // Names of points on a curve are rounded: different points may have the same name.
       if (named_exactly_ && simplex_.holds(w.name_a, w.name_b)) break;
       const Projection step = simplex_.add(w, T(margin_));
-      if (step == Projection::nearer) continue;
+      if (step == Projection::nearer || (step == Projection::no_nearer && by_foot_)) continue;
       // Sets proven to be disjoint stay disjoint: an enclosing simplex is then a rounding error.
       encloses_ = step == Projection::encloses && !separated;
       if (encloses_) simplex_.append(w);
@@ -122,7 +145,13 @@ class Gjk {
       a = a + simplex_.weight(i) * simplex_.point(i).a;
       w = w + simplex_.weight(i) * simplex_.point(i).w;
     }
-    const T length = sqrt_of(simplex_.vv());
+    Vec<T> v = simplex_.v();
+    if (by_foot_) {
+      a = foot_.a;
+      w = foot_.w;
+      v = foot_.v;
+    }
+    const T length = sqrt_of(dot(v, v));
     gap.p_AQa_W = Vec<double>(a);
     gap.p_AQb_W = Vec<double>(a - w);
     // The witness points are points of the sets even where a thin simplex makes v inaccurate: their
@@ -132,7 +161,59 @@ class Gjk {
     gap.lower *= 1.0 - 0x1p-51;
     gap.distance = std::clamp(between, gap.lower, gap.upper);
     // Adding zero turns a negative zero into a positive one.
-    if (length > T(0.0)) gap.n_BA_W = Vec<double>((T(1.0) / length) * simplex_.v()) + Vec<double>();
+    if (length > T(0.0)) gap.n_BA_W = Vec<double>((T(1.0) / length) * v) + Vec<double>();
+  }
+
+  /// The points of a cylinder and of the corners of the polytope that are in the simplex, nearest
+  /// to each other. False if these corners are those of before, or there is no such foot.
+  [[nodiscard]] bool find_foot() noexcept {
+    if constexpr (std::is_same_v<T, double>) {
+      if (round_ == nullptr) return false;
+      const bool is_a = round_ == &A_;
+      std::array<std::uint32_t, 3> names{};
+      std::array<Vec<double>, 3> corners;  // world axes, from the origin of A
+      int count = 0;
+      std::uint64_t sum = 0;  // that of others may be the same: then there is one foot less
+      for (int i = 0; i < simplex_.size(); ++i) {
+        const DifferencePoint<T>& p = simplex_.point(i);
+        const std::uint32_t name = is_a ? p.name_b : p.name_a;
+        if (std::find(names.begin(), names.begin() + count, name) != names.begin() + count)
+          continue;
+        names[count] = name;
+        corners[count++] = is_a ? p.a - p.w : p.a;
+        sum += 1U + std::uint64_t{name} * (name + 3U);
+      }
+      if (std::exchange(foot_.corners, sum) == sum) return false;
+      const Pose& X_W = is_a ? X_WA_ : X_WB_;
+      const Vec<double> origin = is_a ? Vec<double>() : p_AB_;
+      std::array<Vec<double>, 3> in_frame;
+      for (int i = 0; i < count; ++i) in_frame[i] = rotate_transposed(X_W, corners[i] - origin);
+      const CylinderFoot foot =
+          CylinderFootSearch(*round_).run({in_frame.data(), static_cast<std::size_t>(count)});
+      if (!foot.found) return false;
+      const Vec<double> c = rotate(X_W, foot.on_cylinder) + origin;
+      Vec<double> p = foot.weights.x() * corners[0];
+      if (count > 1) p = p + foot.weights.y() * corners[1];
+      if (count > 2) p = p + foot.weights.z() * corners[2];
+      if (minus_signs(foot.weights) != 0U && !is_in_box(p)) return false;
+      foot_.a = is_a ? c : p;
+      foot_.w = is_a ? c - p : p - c;
+      foot_.v = rotate(X_W, is_a ? -foot.v : foot.v);
+      return dot(foot_.v, foot_.v) > margin_ * margin_;
+    } else {
+      return false;
+    }
+  }
+
+  /// The polytope beside a cylinder is a box that has this point, to rounding.
+  [[nodiscard]] bool is_in_box(const Vec<double>& p) const noexcept {
+    const bool is_a = round_ == &B_;
+    const Convex& box = is_a ? A_ : B_;
+    if (box.kind() != Convex::Kind::box) return false;
+    const Vec<double> p_box =
+        rotate_transposed(is_a ? X_WA_ : X_WB_, is_a ? p : p - Vec<double>(p_AB_));
+    const Vec<double> room = box.half_extents() - magnitudes(p_box);
+    return room.x() >= -margin_ && room.y() >= -margin_ && room.z() >= -margin_;
   }
 
   void store(WarmStart& warm) const noexcept {
@@ -156,6 +237,16 @@ class Gjk {
   Simplex<T> simplex_;
   bool encloses_ = false;
   int iterations_ = 0;
+  const Convex* round_;  ///< the cylinder of a cylinder and a polytope; else null
+  /// Points of a cylinder and some corners of a polytope.
+  struct Foot {
+    std::uint64_t corners = 0;  ///< which ones
+    Vec<T> a{};                 ///< [m] the point of A
+    Vec<T> w{};                 ///< [m] from that of B to it
+    Vec<T> v{};                 ///< [m] the same, normal to what is straight there
+  };
+  Foot foot_;
+  bool by_foot_ = false;  ///< the last support point is along the foot, not the simplex
 };
 
 /// True when the bracket, rounding included, is narrow enough to be reported: relative to the
@@ -175,8 +266,8 @@ class Gjk {
 /// The distance of A and B. Cases beyond double precision - a gap near rounding, the noisy normal
 /// of a needle, nearly parallel discs - are decided in extended precision; a bracket still too wide
 /// then ends in `budget_spent`. Cost: one or two support-map pairs when the warm start still holds,
-/// otherwise a few more, for curved sets a few dozen; at most `options.iterations` in each
-/// precision. No heap, no lock.
+/// otherwise a few more, for curved sets but a cylinder and a polytope a few dozen; at most
+/// `options.iterations` in each precision. No heap, no lock.
 [[nodiscard]] inline Gap gap_between(const Convex& A, const Pose& X_WA, const Convex& B,
                                      const Pose& X_WB, const QueryOptions& options,
                                      WarmStart& warm) noexcept {
