@@ -258,6 +258,22 @@ TEST(CommandLine, FaultsAreInjectedReportedAndReplayed) {
   EXPECT_EQ(report_of(folder / "report.json").at("replay").at("same"), 800);
 }
 
+TEST(CommandLine, AReportSaysWhatIsNotAsInTheScene) {
+  const Folder folder;
+  const Ending ending = teleop(
+      "plates --fast --seconds 0.1 --set laws.default.surface_force='30 N' --fault 'frame "
+      "frozen@0.09' --report " +
+      quoted(folder / "report.json") + " --html " + quoted(folder / "page.html"));
+  const nlohmann::json wanted = {{{"path", "laws.default.surface_force"}, {"value", "30 N"}}};
+  EXPECT_EQ(report_of(folder / "report.json").at("changes"), wanted);
+  EXPECT_TRUE(ending.says("changed in the scene   laws.default.surface_force: 30 N\n")) << ending;
+  const std::string page = text_of(folder / "page.html");
+  for (const char* line : {"<p>Changed in the scene: laws.default.surface_force: 30 N</p>",
+                           "<p>Injected fault: frame frozen, from 0.09 s on</p>"}) {
+    EXPECT_NE(page.find(line), std::string::npos) << line;
+  }
+}
+
 TEST(CommandLine, FaultsThatCannotBeHadAreRefused) {
   expect_complaints(
       {{"plates --fault 'frozn frame@1'",

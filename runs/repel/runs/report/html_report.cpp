@@ -260,6 +260,19 @@ std::string status_table(const RunResult& r) {
   return rows.size() > 1 ? word_table(rows, 2) : "<p>No tick had anything to say.</p>\n";
 }
 
+/// What is otherwise than in the scene file, and the faults that were injected.
+std::string changes_and_faults(const RunResult& r) {
+  std::string html;
+  for (const scene::Change& each : r.scene.changes) {
+    html += "<p>Changed in the scene: " + escaped(each.path + ": " + each.value) + "</p>\n";
+  }
+  for (const faults::Choice& each : r.options.faults) {
+    html += "<p>Injected fault: " + escaped(each.name) + ", from " + to_text(each.begin) +
+            " s on</p>\n";
+  }
+  return html;
+}
+
 std::string scene_text(const RunResult& r) {
   std::ifstream file(r.scene.file);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -293,6 +306,7 @@ void write_html(const RunResult& r, std::ostream& out) {
   if (!r.log_trouble.empty()) {
     page += "<p>The log is not whole: " + escaped(r.log_trouble) + "</p>\n";
   }
+  page += changes_and_faults(r);
   for (const std::string& warning : r.warnings) page += "<p>" + escaped(warning) + "</p>\n";
   page += tiles(r);
   page +=

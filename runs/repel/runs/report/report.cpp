@@ -107,6 +107,21 @@ void print_plant(const RunResult& r, std::FILE* out) {
   }
 }
 
+/// The values that are not those of the scene file, in the order of the command line.
+ordered_json changes_of_the_scene(const RunResult& r) {
+  ordered_json list = ordered_json::array();
+  for (const scene::Change& each : r.scene.changes) {
+    list.push_back({{"path", each.path}, {"value", each.value}});
+  }
+  return list;
+}
+
+void print_changes_of_the_scene(const RunResult& r, std::FILE* out) {
+  for (const scene::Change& each : r.scene.changes) {
+    print_line("changed in the scene", each.path + ": " + each.value, out);
+  }
+}
+
 /// The faults that were injected, in the order of the command line.
 ordered_json injected_faults(const RunResult& r) {
   ordered_json list = ordered_json::array();
@@ -467,6 +482,7 @@ void print_report(const RunResult& r, std::FILE* out) {
   // The most important facts first.
   if (!r.log_trouble.empty()) print_line("log is not whole", r.log_trouble, out);
   for (const std::string& warning : r.warnings) print_line("warning", warning, out);
+  print_changes_of_the_scene(r, out);
   print_plant(r, out);
   print_injected_faults(r, out);
   if (!measure_text(r).empty()) print_line("measure of overlaps", measure_text(r), out);
@@ -555,6 +571,7 @@ void write_json(const RunResult& r, std::ostream& file) {
                          {"backend", r.options.backend},    {"rate_hz", r.options.rate_hz},
                          {"by_the_clock", !r.options.fast}, {"threads", r.threads},
                          {"ticks", r.totals().ticks},       {"interrupted", r.interrupted}};
+  report["changes"] = changes_of_the_scene(r);
   report["warnings"] = r.warnings;
   report.update(host::to_json(r.deadline, r.skipped_ticks));
   if (r.options.fast) {  // lateness is undefined without real time
