@@ -19,13 +19,6 @@ namespace {
 using namespace repel;
 using namespace repel::hard_walls;
 
-/// [Hz] Up to which a scene can run: an arm may answer up to 100 ticks late.
-double fastest(const std::string& name) {
-  const scene::Scene scene = load(name);
-  const auto& admittance = scene.robot.admittance;
-  return admittance ? std::min(4000.0, 100.0 / admittance->response) : 4000.0;
-}
-
 using Row = std::vector<bench::Json>;
 
 double rounded(double value, double step) {
@@ -44,79 +37,6 @@ constexpr const char* about_libccd =
     "step adds less than 1 um: its depth is good to about that, and proves nothing to either side; "
     "a touch may count as none.";
 
-const std::vector<std::string>& scenes() {
-  static const std::vector<std::string> all{
-      "anderson_4x8", "waste_sorting", "storage_tank", "glove_box",      "plates",      "two_arms",
-      "conveyor",     "peg_fixture",   "soft_tissue",  "glove_box_mesh", "bin_picking", "delayed",
-      "remote",       "six_axes",      "seen",         "follow_a_seam",  "admittance"};
-  return all;
-}
-
-bench::Result pushes(const bench::Options& options) {
-  bench::Result result;
-  result.title = "Random pushes by a hand that is stronger than the arm";
-  result.columns = {"scene",
-                    "rate [Hz]",
-                    "ticks",
-                    "springs: deepest [mm]",
-                    "hard: deepest [mm]",
-                    "hard, weak springs: deepest [mm]",
-                    "both: deepest by libccd [mm]",
-                    "hardest push withstood [N]",
-                    "told as lost [ticks]",
-                    "springs: tick p50 [us]",
-                    "hard: tick p50 [us]",
-                    "hard: tick p99 [us]"};
-  const std::vector<double> rates = options.quick
-                                        ? std::vector<double>{400.0}
-                                        : std::vector<double>{200.0, 400.0, 1000.0, 4000.0};
-  const std::int64_t ticks = options.quick ? 800 : 32000;
-  const std::size_t count = options.quick ? 2 : scenes().size();
-  for (std::size_t s = 0; s < count; ++s) {
-    for (const double rate : rates) {
-      if (rate > fastest(scenes()[s])) continue;
-      const auto run = [&](Way way) {
-        return push(
-            {.scene = scenes()[s],
-             .rate = rate,
-             .way = way,
-             .ticks = ticks,
-             .seed = options.seed,
-             .libccd_every = is_hard(way) ? std::max(1, static_cast<int>(rate / 400.0)) : 0});
-      };
-      const Outcome springs = run(Way::springs);
-      const Outcome hard = run(Way::hard);
-      const Outcome alone = run(Way::hard_alone);
-      const std::string row = scenes()[s] + " at " + std::to_string(std::lround(rate)) + " Hz";
-      if (std::max(hard.deepest, hard.by_libccd) > tolerated)
-        result.fail(row, "a hard wall was entered");
-      result.rows.push_back(
-          {scenes()[s], rate, ticks, millimetres(springs.deepest), millimetres(hard.deepest),
-           millimetres(alone.deepest), by_libccd(std::max(hard.by_libccd, alone.by_libccd)),
-           std::round(std::max(hard.withstood, alone.withstood)), hard.lost + alone.lost,
-           rounded(springs.compute.percentile_us(0.5), 0.1),
-           rounded(hard.compute.percentile_us(0.5), 0.1),
-           rounded(hard.compute.percentile_us(0.99), 0.1)});
-      bench::progress("pushes", result.rows.size(), count * rates.size());
-    }
-  }
-  result.notes = {
-      "A row fails where a hard wall is entered by more than 0.1 mm. Depths are the proven bound "
-      "of "
-      "the distance, at each evaluation, and that of libccd, at 200 to 500 Hz.",
-      about_libccd,
-      "The hand moves at up to 0.6 m/s and 1.8 rad/s along each axis, another way every third of a "
-      "second; its coupling gives up to 10 kN. Arms are simulated by Bullet.",
-      "Weak springs have 2 % of the force of the scene. Loose parts and what only a camera sees "
-      "are "
-      "left out. The arm of `admittance` takes positions with a response of 40 ms; 4 kHz would be "
-      "more delay than a cell allows.",
-      "Told as lost are the ticks with the status `hold_lost`: the proof fails as the arm passes "
-      "the "
-      "place where it is held."};
-  return result;
-}
-
 bench::Result ways(const bench::Options& options) {
   bench::Result result;
   result.title = "Ways to hold a tool off, with the same hands, at 400 Hz";
@@ -128,7 +48,8 @@ bench::Result ways(const bench::Options& options) {
                     "tools moved [m]",
                     "time of the filter p50 [us]"};
   const std::int64_t ticks = options.quick ? 800 : 32000;
-  const std::size_t count = options.quick ? 1 : 4;
+  constexpr std::array scenes{"anderson_4x8", "waste_sorting", "storage_tank", "glove_box"};
+  const std::size_t count = options.quick ? 1 : scenes.size();
   constexpr std::array compared{Way::springs,
                                 Way::velocity_damper,
                                 Way::barrier_function,
@@ -141,7 +62,7 @@ bench::Result ways(const bench::Options& options) {
   for (std::size_t s = 0; s < count; ++s) {
     for (const double inertia : inertias) {
       for (const Way way : compared) {
-        const Outcome outcome = push({.scene = scenes()[s],
+        const Outcome outcome = push({.scene = scenes[s],
                                       .way = way,
                                       .inertia = inertia,
                                       .ticks = ticks,
@@ -149,9 +70,9 @@ bench::Result ways(const bench::Options& options) {
         const bool is_filter = way != Way::springs && way != Way::hard;
         const double time = outcome.filter.percentile_us(0.5);
         if (way == Way::hard && outcome.deepest > tolerated) {
-          result.fail(scenes()[s], "a hard wall was entered");
+          result.fail(scenes[s], "a hard wall was entered");
         }
-        result.rows.push_back({scenes()[s], text_of(way), inertia, millimetres(outcome.tool),
+        result.rows.push_back({scenes[s], text_of(way), inertia, millimetres(outcome.tool),
                                millimetres(outcome.deepest), rounded(outcome.way, 0.01),
                                is_filter ? bench::Json(rounded(time, 0.1)) : bench::Json("-")});
         bench::progress("ways", result.rows.size(), compared.size() * count * inertias.size());
@@ -159,6 +80,8 @@ bench::Result ways(const bench::Options& options) {
     }
   }
   result.notes = {
+      "The hand moves at up to 0.6 m/s and 1.8 rad/s along each axis, another way every third of a "
+      "second; its coupling gives up to 10 kN. Arms are simulated by Bullet.",
       "All have the springs of the scene. Three published ways change the twist that the hand "
       "commands, by the gaps of the tool: a velocity damper from 50 mm on, a barrier function of "
       "first order with 5 / s, and a scaling of the whole twist to what stops at 2 m/s^2 after 50 "
@@ -298,7 +221,7 @@ bench::Result limits(const bench::Options& options) {
   try_at_random(result, "limits", options, options.quick ? 2 : 100, arms, prepare, row);
   result.notes = {
       "The walls are those of the scenes, as springs. A link that is light has no friction, and "
-      "its joint ends are damped by 20 N m s/rad. The hand moves for 5 s as in the random pushes, "
+      "its joint ends are damped by 20 N m s/rad. The hand moves for 5 s as above, "
       "and then rests.",
       "A row fails where a light joint chatters by more than 0.2 N m, the tool gets deeper than 5 "
       "mm by the proven bound or by libccd, or sound readings are not believed. What sampling "
@@ -308,9 +231,8 @@ bench::Result limits(const bench::Options& options) {
   return result;
 }
 
-constexpr std::array<bench::Part, 4> all{
-    bench::Part{"pushes", "how deep hands get into springs and hard walls", pushes},
-    bench::Part{"ways", "the same with what others do", ways},
+constexpr std::array<bench::Part, 3> all{
+    bench::Part{"ways", "how deep hands get into springs, hard walls and what others do", ways},
     bench::Part{"attacks", "random walls, arms, delays and hands", attacks},
     bench::Part{"limits", "light wrists, late drives and fast hands", limits}};
 constexpr bench::Program program{"hard_walls",

@@ -42,13 +42,9 @@ void lighten(ArmLink& link, double inertia) {
 }  // namespace
 
 const char* text_of(Way way) {
-  constexpr const char* names[] = {"springs",
-                                   "hard",
-                                   "hard, weak springs",
-                                   "velocity damper",
-                                   "barrier function",
-                                   "stopping distance",
-                                   "velocity damper of the arm",
+  constexpr const char* names[] = {"springs",           "hard",
+                                   "velocity damper",   "barrier function",
+                                   "stopping distance", "velocity damper of the arm",
                                    "OSCBF of the arm"};
   return names[static_cast<std::size_t>(way)];
 }
@@ -60,9 +56,8 @@ runs::DescribedScene described(const Setting& setting, const scene::Scene& scene
   runs::DescribedScene described = runs::describe(scene, setting.rate, true);
   const auto change = [&](ForceLaw& law) {
     if (law.passable) return;
-    if (setting.way == Way::hard_alone) law.surface_force *= 0.02;
     law.damping_may_rise = true;
-    law.hold = is_hard(setting.way) ? HoldKind::hard : HoldKind::soft;
+    law.hold = setting.way == Way::hard ? HoldKind::hard : HoldKind::soft;
   };
   for (ObstacleDescription& obstacle : described.cell.obstacles) change(obstacle.law);
   for (std::size_t i = 0; i < described.cell.arms.size(); ++i) {

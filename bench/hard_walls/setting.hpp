@@ -17,7 +17,6 @@ namespace repel::hard_walls {
 enum class Way {
   springs,
   hard,
-  hard_alone,         ///< with weak springs
   velocity_damper,    ///< of the tool, by what the hand commands
   barrier_function,   ///< likewise
   stopping_distance,  ///< likewise
@@ -26,10 +25,6 @@ enum class Way {
 };
 /// Its name in the tables.
 [[nodiscard]] const char* text_of(Way way);
-/// The walls of the cell are hard.
-[[nodiscard]] inline bool is_hard(Way way) {
-  return way == Way::hard || way == Way::hard_alone;
-}
 /// It changes the torques of a cell with springs.
 [[nodiscard]] inline bool is_of_arm(Way way) {
   return way == Way::damper_of_arm || way == Way::barrier_of_arm;

@@ -88,7 +88,7 @@ struct Driven {
 class Filter {
  public:
   Filter(const Setting& setting, const scene::Scene& scene) : way_(setting.way) {
-    if (is_hard(way_) || way_ == Way::springs) return;
+    if (way_ == Way::hard || way_ == Way::springs) return;
     Setting walled = setting;
     walled.way = Way::hard;
     gaps_.emplace(described(walled, scene).cell, is_of_arm(way_));

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes the studies of repel's own and writes their pages: publish.py [--results FOLDER].
 
-Needs the package with its extra `study`: pip install '.[study]'. Writes bench/results/arms.md and
-walls.md. Exits with 1 if an arm of the first is not calm.
+Needs the package with its extra `study`: pip install '.[study]'. Writes bench/results/arms.md,
+walls.md and pushes.md. Exits with 1 if an arm of the first is not calm, or gets into a wall of the
+last.
 """
 
 import argparse
@@ -66,17 +67,33 @@ def walls_page(rows):
     return lines
 
 
+def pushes_page(rows):
+    rates = sorted({row["rate"] for row in rows})
+    hands = len(rows) // len({(row["scene"], row["rate"]) for row in rows})
+    lines = [f"The least distance from a hard wall, in mm, of {hands} hands in each; below 0 is in it.",
+             "", "| scene | " + " | ".join(f"{rate:g} Hz" for rate in rates) + " |",
+             "|---|" + "--:|" * len(rates)]
+    for scene in dict.fromkeys(row["scene"] for row in rows):
+        least = [1e3 * min(row["nearest_wall_m"] for row in rows
+                           if row["scene"] == scene and row["rate"] == rate) for rate in rates]
+        lines.append(f"| {scene} | " + " | ".join(f"{each:.3f}" for each in least) + " |")
+    return lines
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--results", default=root / "bench/results", type=pathlib.Path)
     results = parser.parse_args().results
     calm = rows_of("calm")
     walls = rows_of("stiffest")
+    pushes = rows_of("hard_walls")
     for page, lines in (
             ("arms.md", heading("# Arms that people have", COMMAND) + arms_page(calm)),
-            ("walls.md", heading("# The stiffest walls", COMMAND) + walls_page(walls))):
+            ("walls.md", heading("# The stiffest walls", COMMAND) + walls_page(walls)),
+            ("pushes.md", heading("# Hands stronger than the arm before hard walls", COMMAND)
+             + pushes_page(pushes))):
         (results / page).write_text("\n".join(lines) + "\n")
-    return 0 if all(row["held"] for row in calm) else 1
+    return 0 if all(row["held"] for row in calm + pushes) else 1
 
 
 if __name__ == "__main__":

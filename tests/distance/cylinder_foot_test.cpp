@@ -92,6 +92,19 @@ TEST(CylinderFoot, OfAFaceMayBeBeyondItsCorners) {
   EXPECT_FALSE(CylinderFootSearch(cylinder).run(through).found) << "it meets the cylinder";
 }
 
+TEST(CylinderFoot, OfFourCornersThatAreNoNumbersIsNotAsked) {
+  const Convex box = Convex::box({1, 1, 1});
+  const Convex post = Convex::cylinder(0.3, 0.5);
+  Pose X_WB = Pose::Identity();
+  X_WB.translation().x() = std::nan("");
+  WarmStart warm;
+  warm.size = 4;
+  warm.a = {0, 1, 2, 7};
+  const Gap gap = gap_between(box, Pose::Identity(), post, X_WB, {.iterations = 8}, warm);
+  EXPECT_FALSE(gap.meets);
+  EXPECT_FALSE(gap.lower > 0.0);
+}
+
 // A finger beside a post, all but parallel: points of a rim, one after the other, took 26 support
 // points to meet the bracket of an exact answer, a tick later 24 again, and one pair in six went on
 // in extended precision.

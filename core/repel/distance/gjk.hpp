@@ -170,8 +170,8 @@ class Gjk {
     if constexpr (std::is_same_v<T, double>) {
       if (round_ == nullptr) return false;
       const bool is_a = round_ == &A_;
-      std::array<std::uint32_t, 3> names{};
-      std::array<Vec<double>, 3> corners;  // world axes, from the origin of A
+      std::array<std::uint32_t, 4> names{};
+      std::array<Vec<double>, 4> corners;  // world axes, from the origin of A
       int count = 0;
       std::uint64_t sum = 0;  // that of others may be the same: then there is one foot less
       for (int i = 0; i < simplex_.size(); ++i) {
@@ -186,7 +186,7 @@ class Gjk {
       if (std::exchange(foot_.corners, sum) == sum) return false;
       const Pose& X_W = is_a ? X_WA_ : X_WB_;
       const Vec<double> origin = is_a ? Vec<double>() : p_AB_;
-      std::array<Vec<double>, 3> in_frame;
+      std::array<Vec<double>, 4> in_frame;
       for (int i = 0; i < count; ++i) in_frame[i] = rotate_transposed(X_W, corners[i] - origin);
       const CylinderFoot foot =
           CylinderFootSearch(*round_).run({in_frame.data(), static_cast<std::size_t>(count)});
