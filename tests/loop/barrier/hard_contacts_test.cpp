@@ -64,6 +64,23 @@ TEST(HardContacts, AreThePointsOfHardPairsAlone) {
   EXPECT_TRUE(has_hard(plates.world));
 }
 
+// The farthest point of a pane along its normal is any of its corners. Half-way to that was taken
+// for a point of the contact, beyond the joint of a link that lay flat at the pane. What opened the
+// gap there closed it at the link: a hand pushed the link 13 mm into hard glass.
+TEST(HardContacts, LieWhereThePartsMeet) {
+  const Twist down{{0, 0, -0.2}, {0, 0, 0}};
+  for (const bool is_above : {true, false}) {
+    const Pose X = moved_to(0.3, -0.2, is_above ? 0.035 : -0.035);
+    Plates plates({0.1, 0.05, 0.01}, X, down, {1, 1, 0.01});
+    const auto contacts = plates.contacts();
+    ASSERT_FALSE(contacts.empty());
+    for (const HardContact& contact : contacts) {
+      EXPECT_LE(std::abs(contact.on_a.torque.x()), 0.05 + 1e-9);
+      EXPECT_LE(std::abs(contact.on_a.torque.y()), 0.1 + 1e-9);
+    }
+  }
+}
+
 TEST(HardContacts, AreNoneOfWhatCannotMeetSoon) {
   const Twist up{{0, 0, 0.001}, {0, 0, 0}};
   Plates plates({0.1, 0.05, 0.01}, moved_to(0, 0, 0.09), up, {1, 1, 0.01});

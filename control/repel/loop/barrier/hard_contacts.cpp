@@ -34,7 +34,7 @@ void HardContacts::collect(const Coprocessor& coprocessor, double reaction) noex
   if (!any()) return;
   coprocessor.for_each_near([&](const NearPair& near) {
     const Pair& pair = world_->pair(near.pair);
-    if (pair.law.hold == HoldKind::hard) add(near.pair, pair, near.separation.extraction_W);
+    if (pair.law.hold == HoldKind::hard) add(near, pair);
   });
   // What is made of them must not depend on how the pairs are shared out to threads.
   std::sort(contacts_.begin(), contacts_.begin() + static_cast<std::ptrdiff_t>(count_),
@@ -52,14 +52,15 @@ Vec3 HardContacts::Side::farthest(const Vec3& d, const Vec3& out) const noexcept
   return X_W * to_vec3(level.core.support(local).p) + level.depth * out;
 }
 
-void HardContacts::add(PairId id, const Pair& pair, const Vec3& n) noexcept {
+void HardContacts::add(const NearPair& near, const Pair& pair) noexcept {
+  const Vec3& n = near.separation.extraction_W;
   const Motion& motion = world_->motion();
   const Part& part_a = world_->part(pair.a);
   const Part& part_b = world_->part(pair.b);
   const BodyState& A = state(part_a.body);
   const BodyState& B = state(part_b.body);
   HardContact contact;
-  contact.pair = id;
+  contact.pair = near.pair;
   contact.a = carrier_of(motion, part_a.body);
   contact.b = carrier_of(motion, part_b.body);
   if (!is_moved(contact.a) && !is_moved(contact.b)) return;
@@ -80,8 +81,11 @@ void HardContacts::add(PairId id, const Pair& pair, const Vec3& n) noexcept {
   near_ = std::min(pair.law.range, acceleration * reaction_ * reaction_);
   if (gap > soon * fastest + near_) return;
   const double tilt = std::clamp(least_tilt + soon * turns, least_tilt, most_tilt);
-  const Vec3 middle = 0.5 * (p_WA + p_WB);
-  push_back(contact, n, middle, gap);
+  // The farthest points along n are any corners of faces that are normal to it, and may be far from
+  // where the shapes are nearest.
+  const Vec3 middle = near.is_watched ? Vec3(0.5 * (p_WA + p_WB))
+                                      : Vec3(0.5 * (near.separation.p_WA + near.separation.p_WB));
+  bool is_corner = false;  // that is where they are nearest
   std::array<Vec3, ring> corners;
   int found = 0;
   const Vec3 t1 = perpendicular_to(n);
@@ -96,12 +100,15 @@ void HardContacts::add(PairId id, const Pair& pair, const Vec3& n) noexcept {
     const double there = ends_with_a ? dot(n, corner_a - p_WB) : dot(n, p_WA - corner_b);
     const Vec3 off = at - middle;
     const auto is_there = [&](const Vec3& corner) { return norm(at - corner) < same; };
-    if (norm(off - dot(off, n) * n) < same) continue;  // the nearest point again
     if (std::any_of(corners.begin(), corners.begin() + found, is_there)) continue;
     corners[static_cast<std::size_t>(found++)] = at;
-    contact.at = k + 1;
+    const bool is_nearest = norm(off - dot(off, n) * n) < same;
+    contact.at = is_nearest && !is_corner ? 0 : k + 1;
+    is_corner |= is_nearest;
     push_back(contact, n, at, there);
   }
+  contact.at = 0;
+  if (!is_corner) push_back(contact, n, middle, gap);
 }
 
 void HardContacts::push_back(HardContact contact, const Vec3& n, const Vec3& p_W,

@@ -41,8 +41,8 @@ struct Contacts {
 [[nodiscard]] bool has_hard(const World& world) noexcept;
 
 /// Collects the points of the near hard pairs, at the present poses. The answer of a pair may be
-/// old. Only its direction is used: the separation along any direction is a lower bound of the
-/// distance.
+/// old. It gives a direction, along which the separation is a lower bound of the distance, and
+/// where the shapes are nearest.
 ///
 /// The nearest point is not enough: between nearly parallel faces, a small turn moves it to the
 /// other end of the face. That end may approach while the first one retreats. So the plane is
@@ -87,7 +87,7 @@ class HardContacts {
     [[nodiscard]] Vec3 farthest(const Vec3& d, const Vec3& out) const noexcept;
   };
 
-  void add(PairId id, const Pair& pair, const Vec3& n) noexcept;
+  void add(const NearPair& near, const Pair& pair) noexcept;
 
   // Keeps the nearest point of a pair, and others where they may close soon.
   void push_back(HardContact contact, const Vec3& n, const Vec3& p_W, double gap) noexcept;
