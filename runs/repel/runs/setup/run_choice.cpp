@@ -98,7 +98,7 @@ void describe_coprocessor(CLI::App& app, RunChoice& c) {
       ->check(CLI::IsMember({"together", "beside"}));
   app.add_option("--budget", c.run.budget,
                  "In place of the scene's budget: support pairs per tick, none, or i860 (the "
-                 "processor of 1993: 4 by 8 parts almost fit at 400 Hz)")
+                 "processor of 1993, for 4 by 8 parts at 400 Hz)")
       ->check(CLI::Validator(budget_complaint, "UNITS, i860 or none"));
   app.add_flag("--every-pair", c.run.every_pair,
                "Evaluate pairs out of range, too, for comparison");
