@@ -87,13 +87,15 @@ TEST(Ending, FullDiskIsSaidWhileItRunsAndTheReportComesToAnotherDisk) {
   if (!disk.is_mounted()) GTEST_SKIP() << "no file system may be mounted here";
   const Folder folder;
   for (const std::string name : {"run.csv", "run.mcap"}) {
-    // In real time: output must arrive before the run is over.
+    // In real time: output must arrive before the run is over. Each has a file of its own: what the
+    // run before it said would be read until the shell empties that.
+    const std::string said = folder / (name + ".said");
     const Ending ending =
         shell("$T anderson_4x8 --seconds 600 --log " + quoted(disk / name) + " --report " +
-              quoted(folder / "report.json") + " 2>" + quoted(folder / "said") + " & says " +
-              quoted(folder / "said") + " 'No space left' && echo said; kill $!; wait $!");
+              quoted(folder / "report.json") + " 2>" + quoted(said) + " & says " + quoted(said) +
+              " 'No space left' && echo said; kill $!; wait $!");
     EXPECT_EQ(ending.status, 4) << ending;
-    EXPECT_EQ(ending.out.substr(0, 5), "said\n") << ending << text_of(folder / "said");
+    EXPECT_EQ(ending.out.substr(0, 5), "said\n") << ending << text_of(said);
     const auto report = report_of(folder / "report.json");
     EXPECT_EQ(report.at("interrupted"), true);
     EXPECT_NE(report.at("log_trouble").get<std::string>().find("No space left"), std::string::npos);
