@@ -118,6 +118,8 @@ nb::tuple run_scene(const std::string& file, double seconds, bool fast,
   options.seconds =
       choice.has_seconds ? options.seconds : checked("seconds", seconds, 0.0, 1e6, "s");
   options.fast = fast || options.fast;
+  // Other libraries of the process reserve gigabytes that would be filled for it.
+  options.lock_memory = !options.fast;
   checked("rate_hz", options.rate_hz, 1.0, 1e5, "Hz");
   options.backend = backend.value_or(options.backend);
   options.log = log;

@@ -359,7 +359,7 @@ RunResult run(PreparedRun& prepared, const Attachments& attached, const std::ato
   if (attached.tap != nullptr) attached.tap->watch(cell.world());
   SystemCallGuard::arm(options.fast ? Pauses::yields : Pauses::none);
   if (grant.priority > 0) host::clear_own_processor();
-  TickUsage usage;
+  TickUsage usage(options.lock_memory);
   make_ticks(driven, cameras.get(), attached, stop, result, observers, progress, usage);
   result.worker_usage = cell.coprocessor().usage();
   cell.stop();

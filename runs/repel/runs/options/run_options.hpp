@@ -28,6 +28,7 @@ struct RunOptions {
   double plant_inertia = 1.0;  ///< inertia of the simulated arms as a multiple of their models'
   bool prediction = true;      ///< see TeleoperatorOptions
   bool keep_records = false;   ///< for the HTML report
+  bool lock_memory = true;     ///< all of the process, without which page faults are not counted
   std::vector<faults::Choice> faults{};  ///< between the first arm and the cell
   std::string log;                       ///< file to which every tick is written; empty: none
 };

@@ -20,7 +20,8 @@ namespace {
 
 }  // namespace
 
-TickUsage::TickUsage() noexcept : locked_(touch_stack() && mlockall(MCL_CURRENT) == 0) {}
+TickUsage::TickUsage(bool lock) noexcept
+    : locked_(lock && touch_stack() && mlockall(MCL_CURRENT) == 0) {}
 
 void TickUsage::begin() noexcept {
   getrusage(RUSAGE_THREAD, &before_);

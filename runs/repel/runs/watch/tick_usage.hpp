@@ -16,7 +16,8 @@ class TickUsage {
   /// Touches the stack of the ticks, and locks all present memory of the program; otherwise the
   /// kernel may evict any page. Memory allocated later is not locked: where the limit is low,
   /// allocating it must not fail.
-  TickUsage() noexcept;
+  /// @param lock false: nothing is touched and locked, and page faults are not counted
+  explicit TickUsage(bool lock) noexcept;
 
   void begin() noexcept;
   void end() noexcept;
