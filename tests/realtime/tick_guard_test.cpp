@@ -173,7 +173,7 @@ TEST(Usage, CountsAPageFault) {
 #ifdef REPEL_SANITIZED
   GTEST_SKIP() << "a sanitizer's shadow memory has faults of its own";
 #endif
-  TickUsage usage;
+  TickUsage usage(true);
   if (usage.page_faults() < 0) GTEST_SKIP() << "memory cannot be locked: ulimit -l unlimited";
   const std::size_t size = 4096;
   void* const page =
@@ -190,7 +190,7 @@ TEST(Usage, CountsAPageFault) {
 }
 
 TEST(Usage, CountsAContextSwitch) {
-  TickUsage usage;
+  TickUsage usage(true);
   usage.begin();
   usage.end();
   EXPECT_EQ(usage.voluntary_switches(), 0);
@@ -201,7 +201,7 @@ TEST(Usage, CountsAContextSwitch) {
 }
 
 TEST(Usage, LeavesOutWhatHappensBetweenTicks) {
-  TickUsage usage;
+  TickUsage usage(true);
   for (int i = 0; i < 3; ++i) {
     usage.begin();
     usage.end();
