@@ -78,7 +78,7 @@ class CylinderFootSearch {
       const int moved = here < 0.0 ? -1 : 1;
       (moved < 0 ? low : high) = t;
       (moved < 0 ? slope_low : slope_high) = here;
-      // Regula falsi; an end that stays counts half (the Illinois rule), so that both ends move.
+      // Regula falsi with the Illinois rule: the slope at an end that stays is halved.
       if (moved == stayed) (moved < 0 ? slope_high : slope_low) *= 0.5;
       stayed = moved;
     };
