@@ -60,7 +60,7 @@ struct Found {
 
 TEST(PolygonSearch, FindsThePatchOfEachPairAlone) {
   Rng rng(seed);
-  int found = 0, all = 0;
+  int found = 0, large = 0, all = 0;
   for (int i = 0; i < 500; ++i) {
     SCOPED_TRACE(families::of_seed(seed, "group", i));
     const Group group(rng);
@@ -84,9 +84,11 @@ TEST(PolygonSearch, FindsThePatchOfEachPairAlone) {
     };
     compare(patches_of.small);
     compare(patches_of.large);
+    large += std::popcount(bits_of(patches_of.large.valid));
     all += lane_count;
   }
   EXPECT_GT(found, all / 8);
+  EXPECT_GT(large, 50);
 }
 
 /// Expects the same bits in both; counts the lanes of `counted` with a patch.

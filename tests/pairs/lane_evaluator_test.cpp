@@ -61,8 +61,8 @@ struct EveryPair {
   LaneEvaluator lanes;
 };
 
-/// Checks that the first lanes have the pairs, in as few groups as possible, and no other lane has
-/// one.
+/// Checks that the first lanes have the pairs, in as few groups as possible, no other lane has one,
+/// and that those of two boxes come first.
 void expect_no_gaps(EveryPair& every) {
   const LaneEvaluator& lanes = every.lanes;
   ASSERT_EQ(lanes.groups(), (lanes.count() + lane_count - 1) / lane_count);
@@ -70,8 +70,16 @@ void expect_no_gaps(EveryPair& every) {
     const int taken = std::min(lane_count, lanes.count() - g * lane_count);
     ASSERT_EQ(lanes.group(g).used(), (1U << taken) - 1U) << "group " << g;
   }
+  const auto is_box = [&](PartId part) {
+    return every.world->part(part).shape.level(0).core.kind() == Convex::Kind::box;
+  };
+  bool are_boxes = true;
   for (int lane = 0; lane < lanes.count(); ++lane) {
     const int slot = lanes.slot(lane);
+    const Pair& pair = every.world->pair({slot});
+    const bool are = is_box(pair.a) && is_box(pair.b);
+    ASSERT_TRUE(are_boxes || !are) << "lane " << lane;
+    are_boxes = are;
     const LaneGroup& group = lanes.group(lane / lane_count);
     ASSERT_EQ(every.memory.tracking(slot).lane, lane);
     ASSERT_EQ(group.body_a(lane % lane_count), every.memory.tracking(slot).body_a);
@@ -311,6 +319,30 @@ TEST(LaneEvaluator, FewPairsAreEvaluatedSingly) {
   if (few < 3) return;
   every.lanes.remove_last(1, every.poses);
   EXPECT_EQ(every.lanes.to_add(0), -1);
+}
+
+// Lanes take memory, so that there are fewer than pairs where these are many.
+TEST(LaneEvaluator, PairsWithoutALaneAreEvaluatedSingly) {
+  test::NearPairs scene(3, seed);
+  for (int i = 0; i < 2600; ++i)
+    scene.add([](families::Rng&) { return Shape::box({0.1, 0.1, 0.1}); });
+  EveryPair every(scene.world, true);
+  every.use_lanes = false;
+  (void)every.tick();
+  std::vector<int> fitting;
+  for (int slot = 0; slot < every.count(); ++slot) {
+    if (every.lanes.may_add(slot)) fitting.push_back(slot);
+  }
+  const int all = static_cast<int>(fitting.size());
+  const int more = every.lanes.to_add(all);
+  EXPECT_EQ(more, 1024);
+  ASSERT_GT(all, more) << "of " << every.count();
+  for (int i = 0; i < more; ++i) every.lanes.add(fitting[static_cast<std::size_t>(i)], every.poses);
+  EXPECT_EQ(every.lanes.to_add(all - more), 0);
+  scene.move(0.0, 0.0);
+  const PairTotals& totals = every.tick().totals;
+  EXPECT_EQ(totals.evaluated, every.count());
+  EXPECT_EQ(totals.stale, 0);
 }
 
 }  // namespace lane_evaluator_test

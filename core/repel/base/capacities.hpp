@@ -12,7 +12,7 @@ struct Capacities {
   int loose = 256;           ///< parts that can come and go, each with a body of its own
   int parts = 20000;         ///< convex parts of all bodies
   int pairs = 1 << 20;       ///< pairs of parts
-  int candidates = 1 << 14;  ///< pairs that can soon come within range, at one time; about 1.2 kB
+  int candidates = 1 << 14;  ///< pairs that can soon come within range, at one time; about 1 kB
                              ///< each
   int threads = 16;          ///< of the coprocessor
 };

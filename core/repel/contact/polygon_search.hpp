@@ -107,13 +107,10 @@ class PolygonSearch {
         FlatSearch(set, pose(k), axes, side.facing, Vec<double>(side.nearest.at(k)), tilt_[k])
             .run();
     if (flat.outline.size < 2) corners_ |= 1U << k;
-    if (flat.outline.size > largest || !(flat.tilt > 0.0)) return;
+    if (!(flat.tilt > 0.0) || !polygons.set(k, flat)) return;
+    tilt_[k] = flat.tilt;
     if (flat.face != Flat::no_face) faces.set(k, set, flat.face, side.facing);
-    if (polygons.set(k, flat)) tilt_[k] = flat.tilt;
   }
-
-  /// Corners from which on a patch is found faster alone: all sides of A are cut by all of B.
-  static constexpr int largest = 4;
 
   const FeatureLanes& features_;
   const LaneGap& gap_;

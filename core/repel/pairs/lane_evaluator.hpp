@@ -17,8 +17,9 @@
 namespace repel::detail {
 
 /// Holds some of the pairs of a PairMemory in groups of SIMD lanes; lanes are numbered
-/// consecutively across groups. There are no gaps: when a pair is removed, the last one takes its
-/// lane. The answer of a pair stays in its lane until the pair is removed or its group is not
+/// consecutively across groups. Pairs of boxes come first: a group costs as much as the polygon
+/// with most sides in it. There are no gaps: when a pair is removed, the last one takes its lane.
+/// The answer of a pair stays in its lane until the pair is moved or removed or its group is not
 /// evaluated at a tick; then it is stored in the memory. All memory is allocated at construction.
 class LaneEvaluator {
  public:
@@ -28,8 +29,8 @@ class LaneEvaluator {
       : singles_(&singles),
         memory_(&memory),
         forces_(&forces),
-        slots_(memory.slots() + lane_count),
-        groups_((memory.slots() + lane_count - 1) / lane_count) {}
+        groups_((lanes_for(memory.slots()) + lane_count - 1) / lane_count),
+        slots_(groups_.size() * lane_count) {}
 
   /// Pairs in lanes.
   [[nodiscard]] int count() const noexcept { return count_; }
@@ -91,9 +92,10 @@ class LaneEvaluator {
   [[nodiscard]] bool may_add(int slot) const noexcept {
     return singles_->is_fresh(slot) && fits(slot);
   }
-  /// How many of `more` pairs to add, or, negative, to remove: a group of few pairs costs more than
-  /// these do singly.
-  [[nodiscard]] int to_add(int more) const noexcept {
+  /// How many of `wanted` pairs to add, or, negative, to remove: there may be no lanes for all, and
+  /// a group of few pairs costs more than these do singly.
+  [[nodiscard]] int to_add(int wanted) const noexcept {
+    const int more = std::min(wanted, static_cast<int>(slots_.size()) - count_);
     const int last = (count_ + more) % lane_count;
     // Once they are there, one less may stay, so that a pair that comes and goes moves no others.
     const int fewest = more > 0 ? fewest_in_group : fewest_in_group - 1;
@@ -101,34 +103,26 @@ class LaneEvaluator {
   }
   /// Puts a pair into a lane for which `may_add` is true.
   void add(int slot, const PartPoses& poses) noexcept {
-    memory_->tracking(slot).lane = count_;
-    slots_[count_] = slot;
-    // The unused lanes behind it need valid data to compute with, too.
-    for (int k = index_of(count_); k < lane_count; ++k) {
-      groups_[count_ / lane_count].set(singles_->world(), k, singles_->pair(slot),
-                                       memory_->history(slot), poses, k == index_of(count_));
+    int lane = count_;
+    if (are_boxes(slot)) {
+      lane = boxes_++;
+      move(lane, count_, poses);
     }
+    put(lane, slot, poses);
     ++count_;
   }
 
   /// Removes the pair from its lane, if it has one.
   void remove(int slot, const PartPoses& poses) noexcept {
-    const int lane = lane_of(slot);
+    int lane = lane_of(slot);
     if (lane < 0) return;
-    const int last = slots_[count_ - 1];
-    for (const int moved : {slot, last}) {
-      store(moved);
-      memory_->history(moved).pointed = group_of(lane_of(moved)).pointed(index_of(lane_of(moved)));
+    take_out(slot);
+    if (lane < boxes_) {
+      move(--boxes_, lane, poses);
+      lane = boxes_;
     }
-    memory_->tracking(last).lane = lane;
-    memory_->tracking(slot).lane = -1;
-    --count_;
-    slots_[lane] = slots_[count_];
+    move(--count_, lane, poses);
     groups_[count_ / lane_count].remove(index_of(count_));
-    if (lane < count_) {
-      groups_[lane / lane_count].set(singles_->world(), index_of(lane), singles_->pair(last),
-                                     memory_->history(last), poses, true);
-    }
   }
 
   /// Removes the last pairs, as many as that.
@@ -223,6 +217,12 @@ class LaneEvaluator {
   /// Measured: below, a group costs more than its pairs do singly.
   static constexpr int fewest_in_group = lane_count / 2;
 
+  /// A lane takes more memory than all else that is known of a pair, and where there are thousands
+  /// of pairs, few are within range at one time.
+  [[nodiscard]] static int lanes_for(int slots) noexcept {
+    return std::min(slots, std::max(1024, slots / 8));
+  }
+
   [[nodiscard]] int lane_of(int slot) const noexcept { return memory_->tracking(slot).lane; }
   [[nodiscard]] const LaneGroup& group_of(int lane) const noexcept {
     return groups_[lane / lane_count];
@@ -240,6 +240,37 @@ class LaneEvaluator {
     const LaneGroup& group = group_of(lane);
     const int k = index_of(lane);
     return {.nearest = group.nearest(k), .peak_force = group.peak(k), .deepest = group.deepest(k)};
+  }
+  [[nodiscard]] bool are_boxes(int slot) const noexcept {
+    const Pair& p = singles_->pair(slot);
+    const auto is_box = [&](PartId part) {
+      return singles_->world().part(part).shape.level(0).core.kind() == Convex::Kind::box;
+    };
+    return is_box(p.a) && is_box(p.b);
+  }
+  void put(int lane, int slot, const PartPoses& poses) noexcept {
+    memory_->tracking(slot).lane = lane;
+    slots_[lane] = slot;
+    // The unused lanes behind the last one need valid data to compute with, too.
+    const int end = lane == count_ ? lane_count : index_of(lane) + 1;
+    for (int k = index_of(lane); k < end; ++k) {
+      groups_[lane / lane_count].set(singles_->world(), k, singles_->pair(slot),
+                                     memory_->history(slot), poses, k == index_of(lane));
+    }
+  }
+  /// Stores what its lane knows of a pair.
+  void take_out(int slot) noexcept {
+    store(slot);
+    const int lane = lane_of(slot);
+    memory_->history(slot).pointed = group_of(lane).pointed(index_of(lane));
+    memory_->tracking(slot).lane = -1;
+  }
+  /// Moves the pair of a lane to another one, which has none.
+  void move(int from, int to, const PartPoses& poses) noexcept {
+    if (from == to) return;
+    const int slot = slots_[from];
+    take_out(slot);
+    put(to, slot, poses);
   }
   /// Calls f(k) for each set bit k.
   template <class F>
@@ -294,9 +325,10 @@ class LaneEvaluator {
   PairMemory* memory_;
   PairForces* forces_;
   int count_ = 0;
-  std::vector<std::int32_t> slots_;  ///< by lane
+  int boxes_ = 0;  ///< lanes with two boxes, the first ones
   std::vector<LaneGroup> groups_;
-  bool all_stay_ = true;  ///< no pair has to be removed from its lane after this tick
+  std::vector<std::int32_t> slots_;  ///< by lane
+  bool all_stay_ = true;             ///< no pair has to be removed from its lane after this tick
 };
 
 }  // namespace repel::detail
