@@ -19,6 +19,39 @@ double probability(double log_odds) {
   return 1.0 - 1.0 / (1.0 + std::exp(log_odds));
 }
 
+// [px] Largest distance of rays.
+constexpr unsigned most_step = 64;
+
+/// [px] Distance of the widest grid of rays, up to `most_step`, that has one through this pixel.
+unsigned widest_grid(int u, int v) {
+  return 1U << std::countr_zero(static_cast<unsigned>(u | v) | most_step);
+}
+
+/// The faces of cubes across one axis that a ray meets. Where it meets them is counted in 2^-45 of
+/// its length: whole numbers are compared and added in fewer cycles, and one cube after another
+/// waits for both.
+struct Faces {
+  std::int64_t next, period;
+  int at, step;  ///< the cube, counted along the axis
+
+  /// Goes into the next cube where `is_next` has all its bits set, and stays where it has none:
+  /// which axis is next cannot be predicted.
+  void pass(std::int64_t is_next) {
+    next += is_next & period;
+    at += static_cast<int>(is_next) & step;
+  }
+};
+
+/// All bits set, or none.
+std::int64_t all_bits(bool are_set) {
+  return -std::int64_t{are_set};
+}
+
+/// @param share of the length of a ray; it ends at 1, so what is beyond 2 is never met
+std::int64_t counted(double share) {
+  return static_cast<std::int64_t>(0x1p45 * std::clamp(share, -2.0, 2.0));
+}
+
 octomap::point3d point_of(const Vec3& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
 }
@@ -36,8 +69,8 @@ DepthMap::DepthMap(const percepts::DepthCamera& camera, const DepthMapOptions& o
   places_ = 1;
   for (std::size_t k = 0; k < 3; ++k) {
     low_[k] = cubes.low[k] + middle_cube;
-    size_[k] = cubes.high[k] + 1 - cubes.low[k];
-    places_ *= static_cast<std::size_t>(size_[k]);
+    size_[k] = static_cast<unsigned>(cubes.high[k] + 1 - cubes.low[k]);
+    places_ *= size_[k];
   }
   marks_.assign(places_, Mark::none);
   states_.assign(places_, State::unknown);
@@ -55,9 +88,7 @@ DepthMap::DepthMap(const percepts::DepthCamera& camera, const DepthMapOptions& o
 int DepthMap::insert(std::span<const float> depth, const Pose& X_WC, double time) {
   if (depth.size() < camera_.pixels()) return 0;
   marked_.clear();
-  ends_.clear();
-  mark_ends(depth, X_WC);
-  mark_rays(point_of(X_WC.translation()));
+  mark_pixels(depth, X_WC);
   int hits = 0;
   for (const octomap::OcTreeKey& key : marked_) {
     const std::size_t place = place_of(key);
@@ -68,18 +99,6 @@ int DepthMap::insert(std::span<const float> depth, const Pose& X_WC, double time
   return hits;
 }
 
-std::size_t DepthMap::place_of(const octomap::OcTreeKey& key) const noexcept {
-  std::array<int, 3> at{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    at[k] = static_cast<int>(key[static_cast<unsigned>(k)]) - low_[k];
-    if (at[k] < 0 || at[k] >= size_[k]) return places_;
-  }
-  return (static_cast<std::size_t>(at[2]) * static_cast<std::size_t>(size_[1]) +
-          static_cast<std::size_t>(at[1])) *
-             static_cast<std::size_t>(size_[0]) +
-         static_cast<std::size_t>(at[0]);
-}
-
 void DepthMap::mark(const octomap::OcTreeKey& key, Mark what) {
   const std::size_t place = place_of(key);
   if (place == places_ || marks_[place] >= what) return;
@@ -87,7 +106,9 @@ void DepthMap::mark(const octomap::OcTreeKey& key, Mark what) {
   marks_[place] = what;
 }
 
-void DepthMap::mark_ends(std::span<const float> depth, const Pose& X_WC) {
+void DepthMap::mark_pixels(std::span<const float> depth, const Pose& X_WC) {
+  // [m px] Divided by a depth: the pixels across half a cube there.
+  const double half_cube = 0.5 * options_.cube * std::min(camera_.fx, camera_.fy);
   for (int v = 0; v < camera_.height; ++v) {
     for (int u = 0; u < camera_.width; ++u) {
       const float z = depth[camera_.at(u, v)];
@@ -100,10 +121,13 @@ void DepthMap::mark_ends(std::span<const float> depth, const Pose& X_WC) {
       mark(is_hit ? taken_for(end, key) : key, is_hit ? Mark::hit : Mark::hidden);
       // Pixel stride whose footprint at this depth is half a cube. A power of two puts the rays of
       // farther surfaces between those of nearer ones.
-      const double pixels = 0.5 * options_.cube * std::min(camera_.fx, camera_.fy) / far;
-      const auto step =
-          static_cast<int>(std::bit_floor(static_cast<unsigned>(std::clamp(pixels, 1.0, 64.0))));
-      if (u % step == 0 && v % step == 0) ends_.push_back(end);
+      const double pixels = std::clamp(half_cube / far, 1.0, double{most_step});
+      const unsigned grid = widest_grid(u, v);
+      if (grid < std::bit_floor(static_cast<unsigned>(pixels))) continue;
+      // Before this depth the rays of the next wider grid are less than half a cube apart. Those of
+      // a cube wholly before a surface reach it, so this ray need not go there.
+      const double begin = grid < most_step ? 0.5 * half_cube / grid : 0.0;
+      mark_ray(point_of(X_WC * (begin * camera_.ray(u, v))), end);
     }
   }
 }
@@ -137,10 +161,36 @@ octomap::OcTreeKey DepthMap::taken_for(const octomap::point3d& p,
   return own;
 }
 
-void DepthMap::mark_rays(const octomap::point3d& from) {
-  for (const octomap::point3d& end : ends_) {
-    if (!tree_.computeRayKeys(from, end, ray_)) continue;
-    for (const octomap::OcTreeKey& key : ray_) mark(key, Mark::free);
+// Finds the cubes that computeRayKeys of OctoMap does, without a list of their keys.
+void DepthMap::mark_ray(const octomap::point3d& begin, const octomap::point3d& end) {
+  octomap::OcTreeKey first, last;
+  if (!tree_.coordToKeyChecked(begin, first) || !tree_.coordToKeyChecked(end, last)) return;
+  int left = 0;  // faces on the way
+  const auto faces_across = [&](unsigned k) {
+    const double from = static_cast<double>(begin(k));
+    const double length = static_cast<double>(end(k)) - from;
+    const int step = length < 0.0 ? -1 : 1;
+    const double face = tree_.keyToCoord(first[k]) + 0.5 * step * options_.cube;
+    left += std::abs(last[k] - first[k]);
+    return Faces{length == 0.0 ? counted(2.0) : counted((face - from) / length),
+                 counted(options_.cube / std::abs(length)), first[k] - low_[k], step};
+  };
+  Faces x = faces_across(0);
+  Faces y = faces_across(1);
+  Faces z = faces_across(2);
+  for (; left > 0; --left) {
+    const std::size_t place = place_at(x.at, y.at, z.at);
+    // Nothing changes in what is free already, and that is most of it.
+    if (place != places_ && states_[place] != State::free && marks_[place] == Mark::none) {
+      const auto key = [](int cube) { return static_cast<octomap::key_type>(cube); };
+      marked_.emplace_back(key(x.at + low_[0]), key(y.at + low_[1]), key(z.at + low_[2]));
+      marks_[place] = Mark::free;
+    }
+    const std::int64_t is_z = all_bits(z.next < std::min(x.next, y.next));
+    const std::int64_t is_y = all_bits(y.next < x.next) & ~is_z;
+    x.pass(~(is_y | is_z));
+    y.pass(is_y);
+    z.pass(is_z);
   }
 }
 

@@ -75,6 +75,15 @@ TEST(Occupancy, OfAnythingIsCoveredAndNothingElseIs) {
   }
 }
 
+TEST(Occupancy, HasOnePlaceForEachCube) {
+  const OccupancyGrid grid = empty(3, 4, 5);
+  for (std::size_t i = 0; i < grid.solid.size(); ++i) {
+    const std::array<int, 3> at = grid.cube(i);
+    for (std::size_t k = 0; k < 3; ++k) ASSERT_LT(at[k], grid.size[k]);
+    ASSERT_EQ(grid.place(at[0], at[1], at[2]), i);
+  }
+}
+
 TEST(Occupancy, OfLargerCubesContainsTheSmallOnes) {
   OccupancyGrid grid = empty(5, 5, 5);
   fill(grid, {3, 3, 3}, {4, 4, 4});

@@ -4,12 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <set>
 
 #include "percepts/seen.hpp"
+#include "support/draws.hpp"
 
 namespace repel::octrees {
 namespace depth_map_test {
 
+using families::draws;
 using percepts::DepthCamera;
 namespace seen = percepts::test;
 
@@ -71,6 +74,103 @@ TEST(DepthMap, IsOccupiedWhereSomethingWasMeasuredAndFreeBefore) {
     }
   }
   EXPECT_GT(measured, 10000);
+}
+
+using Cube = std::array<int, 3>;
+
+/// The cubes of its region that a map knows, occupied or free.
+std::set<Cube> known_cubes(const DepthMap& map) {
+  const cover::CubeRange range = cubes_in(map.options().region, map.options().cube);
+  const std::vector<std::uint8_t> free = grid_of(map.tree(), range, true).solid;
+  const cover::OccupancyGrid occupied = grid_of(map.tree(), range, false);
+  std::set<Cube> known;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    Cube at = occupied.cube(i);
+    for (std::size_t k = 0; k < 3; ++k) at[k] += range.low[k];
+    if (free[i] == 0 || occupied.solid[i] != 0) known.insert(at);
+  }
+  return known;
+}
+
+// The map goes along rays itself, which must not end early, nor leave the region.
+TEST(DepthMap, KnowsTheCubesThatOctoMapFindsOnARay) {
+  constexpr unsigned seed = 46;
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> coordinate(-2.0, 2.0);
+  std::uniform_real_distribution<double> depth(0.2, 3.0);
+  const DepthMapOptions options{.cube = 0.03, .region = {{-1.0, -1.2, -0.7}, {0.8, 1.1, 1.3}}};
+  const cover::CubeRange range = cubes_in(options.region, options.cube);
+  const auto point = [](const Vec3& p) {
+    return octomap::point3d(static_cast<float>(p.x()), static_cast<float>(p.y()),
+                            static_cast<float>(p.z()));
+  };
+  constexpr int rays = draws(200);
+  int cubes = 0;
+  int misses = 0;
+  for (int i = 0; i < rays; ++i) {
+    Stage stage;
+    const auto drawn = [&] {
+      return Vec3(coordinate(random), coordinate(random), coordinate(random));
+    };
+    // Some of them begin in the region; some go along a plane of the axes, or along an axis.
+    stage.X_WC = Eigen::Translation3d(0.6 * drawn()) *
+                 Eigen::AngleAxisd(i % 5 == 0 ? 0.0 : coordinate(random), drawn().normalized());
+    stage.camera.cx = 64.0;
+    stage.camera.cy = i % 10 == 0 ? 64.0 : 61.3;
+    std::vector<float> image(stage.camera.pixels());
+    const float z = image[stage.camera.at(64, 64)] = static_cast<float>(depth(random));
+    DepthMap map = stage.map(options);
+    (void)map.insert(image, stage.X_WC, 0.0);
+    std::set<Cube> expected;
+    const auto expect = [&](const octomap::OcTreeKey& key) {
+      const Cube at{key[0] - 32768, key[1] - 32768, key[2] - 32768};
+      bool is_inside = true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        is_inside = is_inside && at[k] >= range.low[k] && at[k] <= range.high[k];
+      }
+      if (is_inside) expected.insert(at);
+    };
+    const octomap::point3d end = point(stage.X_WC * stage.point(64, 64, z));
+    octomap::KeyRay ray;
+    ASSERT_TRUE(map.tree().computeRayKeys(point(stage.X_WC.translation()), end, ray));
+    for (const octomap::OcTreeKey& key : ray) expect(key);
+    expect(map.tree().coordToKey(end));
+    ASSERT_EQ(known_cubes(map), expected) << "seed " << seed << ", ray " << i;
+    cubes += static_cast<int>(expected.size());
+    misses += expected.empty() ? 1 : 0;
+  }
+  EXPECT_GT(cubes, 10 * rays);
+  EXPECT_GT(misses, rays / 20);
+}
+
+TEST(DepthMap, IsFreeWhereACubeIsWhollyBeforeASurface) {
+  for (const double cube : {0.02, 0.05, 0.2}) {
+    Stage stage;
+    stage.camera.nearest = 0.01;
+    const DepthMapOptions options{.cube = cube, .region = {{-1.2, -1.2, -1.8}, {1.2, 1.2, 0.4}}};
+    DepthMap map = stage.map(options);
+    (void)map.insert(seen::depths(stage.camera, {}, {wall}), stage.X_WC, 0.0);
+    const cover::CubeRange range = cubes_in(options.region, cube);
+    const cover::OccupancyGrid grid = grid_of(map.tree(), range, true);
+    const Pose X_CW = stage.X_WC.inverse();
+    int before = 0;
+    for (std::size_t i = 0; i < grid.solid.size(); ++i) {
+      const Cube at = grid.cube(i);
+      const Vec3 low = grid.low + cube * Vec3(at[0], at[1], at[2]);
+      bool is_before = true;
+      for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 p = X_CW * (low + cube * Vec3(corner & 1, corner >> 1 & 1, corner >> 2));
+        const double u = stage.camera.cx + stage.camera.fx * p.x() / p.z();
+        const double v = stage.camera.cy + stage.camera.fy * p.y() / p.z();
+        is_before = is_before && p.z() > 0.0 && wall.n.dot(p) < wall.offset - 1e-6 && u >= 0.0 &&
+                    v >= 0.0 && u <= stage.camera.width - 1 && v <= stage.camera.height - 1;
+      }
+      if (!is_before) continue;
+      ASSERT_EQ(grid.solid[i], 0) << low.transpose() << ", cubes of " << cube;
+      ++before;
+    }
+    EXPECT_GT(before, 20) << "cubes of " << cube;
+  }
 }
 
 TEST(DepthMap, IsFreeAgainAfterSoManyImagesThatSeeThroughIt) {

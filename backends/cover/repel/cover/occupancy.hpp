@@ -29,6 +29,13 @@ struct OccupancyGrid {
                static_cast<std::size_t>(size[0]) +
            static_cast<std::size_t>(x);
   }
+  /// The cube along x, y, z with this index.
+  [[nodiscard]] std::array<int, 3> cube(std::size_t place) const noexcept {
+    const auto x = static_cast<std::size_t>(size[0]);
+    const auto y = static_cast<std::size_t>(size[1]);
+    return {static_cast<int>(place % x), static_cast<int>(place / x % y),
+            static_cast<int>(place / x / y)};
+  }
 };
 
 /// Cubes from `low` to `high`, both included.

@@ -38,8 +38,8 @@ class DepthMap {
 
   /// @param depth [m] width x height of the camera; a shorter image is as if nothing was measured
   /// @param X_WC [m] the camera in the frame of the map when it was taken @param time [s] of the
-  /// image, not before that of the last one @return cubes with a measurement. Cost: about 10 ns a
-  /// pixel, and 10 ns for each cube on a ray; rays are half a cube apart at their ends
+  /// image, not before that of the last one @return cubes with a measurement. Cost: about 15 ns a
+  /// pixel, and 3 ns for each cube on a ray; rays are a quarter to half a cube apart
   int insert(std::span<const float> depth, const Pose& X_WC, double time);
 
   /// The map, as of the last image.
@@ -56,24 +56,34 @@ class DepthMap {
                                              const octomap::OcTreeKey& own) const;
   [[nodiscard]] bool is_taken(const octomap::OcTreeKey& key) const noexcept;
   /// The place of a cube in the lists; `places_` if it is not in the region.
-  [[nodiscard]] std::size_t place_of(const octomap::OcTreeKey& key) const noexcept;
+  [[nodiscard]] std::size_t place_of(const octomap::OcTreeKey& key) const noexcept {
+    return place_at(key[0] - low_[0], key[1] - low_[1], key[2] - low_[2]);
+  }
+  /// The same for a cube counted from the first of the region.
+  [[nodiscard]] std::size_t place_at(int x, int y, int z) const noexcept {
+    const auto u = static_cast<unsigned>(x);
+    const auto v = static_cast<unsigned>(y);
+    const auto w = static_cast<unsigned>(z);
+    if (u >= size_[0] || v >= size_[1] || w >= size_[2]) return places_;
+    return (std::size_t{w} * size_[1] + v) * size_[0] + u;
+  }
   void mark(const octomap::OcTreeKey& key, Mark what);
-  void mark_ends(std::span<const float> depth, const Pose& X_WC);
-  void mark_rays(const octomap::point3d& from);
+  void mark_pixels(std::span<const float> depth, const Pose& X_WC);
+  /// Marks the cubes between two points [m] as free, but not that of the end.
+  void mark_ray(const octomap::point3d& begin, const octomap::point3d& end);
   void settle(std::size_t place, const octomap::OcTreeKey& key, double time);
 
   percepts::DepthCamera camera_;
   DepthMapOptions options_;
   octomap::OcTree tree_;
-  std::array<int, 3> low_{}, size_{};  ///< of the region, in cubes of OctoMap's count
+  std::array<int, 3> low_{};        ///< the first cube of the region, in OctoMap's count
+  std::array<unsigned, 3> size_{};  ///< cubes of the region
   std::size_t places_ = 0;
   // By place:
   std::vector<Mark> marks_;    ///< of this image
   std::vector<State> states_;  ///< as in the tree
   std::vector<float> hit_at_;  ///< [s] when something was last measured there
   std::vector<octomap::OcTreeKey> marked_;
-  std::vector<octomap::point3d> ends_;  ///< [m] of the rays of this image
-  octomap::KeyRay ray_;
 };
 
 }  // namespace repel::octrees
