@@ -25,6 +25,13 @@ class LiveView(FromTheBeginning):
         self.assertGreater(pixels["width"] * pixels["height"], 400 * 400)
         self.assertGreater(max(pixels["variance"][:3]), 100, "the canvas is blank")
 
+    def test_it_is_found_out_that_the_processor_draws(self):
+        smooth = self.browser.execute_script("""
+            const gl = document.getElementById("canvas").getContext("webgl2");
+            return gl.getContextAttributes().antialias;""")
+        self.assertFalse(smooth, "smooth edges are for a graphics card")
+        self.assertGreater(self.page.state()["quality"], 0)
+
     def test_ticks_and_time_advance(self):
         before = self.page.state()
         self.page.run()

@@ -9,12 +9,18 @@ import {
 import { LEVELS, Quality } from "./quality.js";
 import { colour, onTheme } from "./theme.js";
 
-// Browsers say so by refusing a canvas for which a slow one is not good enough.
+// Some browsers say so by refusing a canvas for which a slow one is not good enough, some only by the
+// name of what draws.
+const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+
 function drawsInHardware() {
   const options = { failIfMajorPerformanceCaveat: true };
   const gl = document.createElement("canvas").getContext("webgl2", options);
-  gl?.getExtension("WEBGL_lose_context")?.loseContext();
-  return gl !== null;
+  if (!gl) return false;
+  const names = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return !SOFTWARE.test(name);
 }
 
 export class Stage {
