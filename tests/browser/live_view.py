@@ -32,6 +32,25 @@ class LiveView(FromTheBeginning):
         self.assertFalse(smooth, "smooth edges are for a graphics card")
         self.assertGreater(self.page.state()["quality"], 0)
 
+    def test_where_the_processor_draws_light_at_corners_looks_the_same(self):
+        self.draw_pixels()
+        self.open(self.url).draws()
+        self.page.stands()
+        found = self.module("vendor/three.min.js", """
+            const shadows = document.getElementById("show-shadows");
+            shadows.click();
+            const corners = repel.pixels();
+            const hook = delete module.MeshLambertMaterial.prototype.onBeforeCompile;
+            shadows.click();
+            repel.pixels();  // a change of shadows compiles again
+            shadows.click();
+            return {corners, pixels: repel.pixels(), hook};""")
+        self.assertTrue(found["hook"])
+        for name, within in (("mean", 0.1), ("variance", 5)):
+            for one, other in zip(found["corners"][name], found["pixels"][name]):
+                self.assertAlmostEqual(one, other, delta=within)
+        self.has_no_errors()
+
     def test_ticks_and_time_advance(self):
         before = self.page.state()
         self.page.run()

@@ -7,6 +7,7 @@ import {
   ShadowMaterial, Sphere, Vector3, WebGLRenderer,
 } from "./vendor/three.min.js";
 import { LEVELS, Quality } from "./quality.js";
+import { shadeAtCorners } from "./shading.js";
 import { colour, onTheme } from "./theme.js";
 
 // Some browsers say so by refusing a canvas for which a slow one is not good enough, some only by the
@@ -36,6 +37,7 @@ export class Stage {
   constructor(canvas) {
     this.canvas = canvas;
     const software = !drawsInHardware();
+    if (software) shadeAtCorners();
     this.smooth = !software;
     // Smooth edges are four times the pixels.
     this.renderer = new WebGLRenderer({ canvas, antialias: !software, alpha: true });
