@@ -8,6 +8,8 @@
 /// Answers are checked before the timing: the force on the tool must be that of the queries.
 /// `least_ns` is what the formulas of distance and patch take alone, with all lanes full and the
 /// pairs where they are: without them, no tick is faster. It is of the pairs that are apart.
+///
+/// Where MuJoCo is there, the contacts that it finds between the same pairs at the same poses.
 
 #include <benchmark/benchmark.h>
 
@@ -22,6 +24,9 @@
 #include <support/families.hpp>
 
 #include "harness.hpp"
+#ifdef REPEL_BENCH_MUJOCO
+#include "mujoco_contacts.hpp"
+#endif
 
 namespace {
 
@@ -30,8 +35,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t seed = 20;
 constexpr std::size_t positions = 128;
+constexpr double range = 0.06;  ///< [m] within which a pair is near
 using families::direction;
 using families::Rng;
+using families::Solid;
 using families::uniform;
 
 struct Scene {
@@ -47,9 +54,9 @@ constexpr Scene scenes[] = {{"boxes", false, false, 0.0},
                             {"boxes and hulls, a tenth in overlap", false, false, 0.1},
                             {"parallel boxes and hulls, a tenth in overlap", false, true, 0.1}};
 
-Shape random_shape(Rng& rng, bool is_hull, bool is_parallel) {
+Solid random_solid(Rng& rng, bool is_hull, bool is_parallel) {
   if (!is_hull) {
-    return Shape::box({uniform(rng, 0.03, 0.08), uniform(rng, 0.03, 0.08), 0.04});
+    return {{}, true, {uniform(rng, 0.03, 0.08), uniform(rng, 0.03, 0.08), 0.04}};
   }
   std::vector<Vec3> points;
   for (int i = 0; i < 16; ++i) {
@@ -58,21 +65,28 @@ Shape random_shape(Rng& rng, bool is_hull, bool is_parallel) {
                                         i % 2 == 0 ? -0.04 : 0.04)
                                  : Vec3(0.06 * direction(rng)));
   }
-  return Shape::hull(points);
+  return {points};
+}
+
+Shape shape(const Solid& s) {
+  return s.box ? Shape::box(s.half_extents) : Shape::hull(s.vertices);
 }
 
 /// The tool, its obstacles, and its poses.
 struct Setting {
   World world;
   BodyId tool = world.add_body("tool");
+  std::vector<families::Pair> solids;  ///< of the pairs: A in the tool, B in the world
   std::vector<Pose> X_WT;
 
   Setting(const Scene& scene, int pairs) {
     Rng rng(seed);
     for (int i = 0; i < pairs; ++i) {
       const bool is_hull = scene.are_hulls || (scene.overlapping > 0.0 && i % 2 == 1);
-      const Shape A = random_shape(rng, is_hull, scene.are_parallel);
-      const Shape B = random_shape(rng, is_hull, scene.are_parallel);
+      const Solid solid_A = random_solid(rng, is_hull, scene.are_parallel);
+      const Solid solid_B = random_solid(rng, is_hull, scene.are_parallel);
+      const Shape A = shape(solid_A);
+      const Shape B = shape(solid_B);
       const bool overlaps = scene.overlapping > 0.0 && i % 10 == 3;
       Pose X_A = Pose::Identity();
       Pose X_B = Pose::Identity();
@@ -98,7 +112,8 @@ struct Setting {
         X_A.translation() += high * away;
       }
       world.add_pair(world.add_part(tool, "part", A, X_A),
-                     world.add_part(World::fixed, "obstacle", B, X_B), {.range = 0.06});
+                     world.add_part(World::fixed, "obstacle", B, X_B), {.range = range});
+      solids.push_back({solid_A, solid_B, X_A, X_B});
     }
     // A slanted circle of 90 mm and a turn of two milliradians.
     for (std::size_t k = 0; k < positions; ++k) {
@@ -112,6 +127,10 @@ struct Setting {
     }
   }
 };
+
+double ns_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
+}
 
 double median(std::vector<double>& all) {
   std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2),
@@ -256,9 +275,6 @@ void near_pair(benchmark::State& state) {
   std::vector<double> raw_ns, tick_ns, least_ns;
   double near = 0.0, overlapping = 0.0;
   std::size_t tick = 0;
-  const auto since = [](Clock::time_point start) {
-    return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
-  };
   for (auto _ : state) {
     const std::size_t at = tick++ % positions;
     const auto start = Clock::now();
@@ -270,15 +286,15 @@ void near_pair(benchmark::State& state) {
       benchmark::DoNotOptimize(s);
       overlapping += s.distance < 0.0 ? 1.0 : 0.0;
     }
-    const double raw = since(start);
+    const double raw = ns_since(start);
     const auto middle = Clock::now();
     benchmark::DoNotOptimize(lanes.evaluate(scene.are_parallel));
-    const double least = since(middle);
+    const double least = ns_since(middle);
     world.motion().tick = static_cast<std::int64_t>(tick);
     world.place(setting.tool, setting.X_WT[at], {});
     const auto begin = Clock::now();
     const PairForces& forces = coprocessor.exchange();
-    const double whole = since(begin);
+    const double whole = ns_since(begin);
     state.SetIterationTime(1e-9 * whole);
     near += forces.totals.near;
     raw_ns.push_back(raw / static_cast<double>(pairs));
@@ -295,12 +311,68 @@ void near_pair(benchmark::State& state) {
   state.SetLabel(scene.name);
 }
 
+#ifdef REPEL_BENCH_MUJOCO
+
+using bench::MuJoCoContacts;
+
+/// How many pairs have no contact, or a nearest one that is off by more than 1e-6 m, at all
+/// positions.
+int wrong_contacts(const Setting& setting, MuJoCoContacts& contacts) {
+  int wrong = 0;
+  for (const Pose& X_WT : setting.X_WT) {
+    contacts.place(X_WT);
+    contacts.find();
+    const std::vector<double> nearest = contacts.nearest();
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+      const Pair& pair = setting.world.pairs()[i];
+      const Part& A = setting.world.part(pair.a);
+      const Part& B = setting.world.part(pair.b);
+      const Separation s = separation(A.shape, X_WT * A.X_BP, B.shape, B.X_BP);
+      if (!(nearest[i] >= s.lower - 1e-6 && nearest[i] <= s.upper + 1e-6)) ++wrong;
+    }
+  }
+  return wrong;
+}
+
+/// The contacts of the same pairs at the same poses, as MuJoCo finds them: with `multiccd` more
+/// than one of a pair with a hull.
+void mujoco_contacts(benchmark::State& state) {
+  const Scene& scene = scenes[state.range(0)];
+  const auto pairs = static_cast<int>(state.range(1));
+  const Setting setting(scene, pairs);
+  MuJoCoContacts contacts(setting.solids, range, state.range(2) != 0);
+  state.counters["wrong"] = wrong_contacts(setting, contacts);
+  state.counters["checked"] = static_cast<double>(positions) * pairs;
+  std::vector<double> tick_ns;
+  double found = 0.0;
+  for (auto _ : state) {
+    contacts.place(setting.X_WT[tick_ns.size() % positions]);
+    const auto begin = Clock::now();
+    found += contacts.find();
+    const double whole = ns_since(begin);
+    state.SetIterationTime(1e-9 * whole);
+    tick_ns.push_back(whole / pairs);
+  }
+  state.counters["contacts"] = found / static_cast<double>(tick_ns.size()) / pairs;
+  state.counters["tick_ns"] = median(tick_ns);
+  state.SetLabel(scene.name);
+}
+
+#endif
+
 }  // namespace
 
 BENCHMARK(near_pair)
     ->ArgNames({"scene", "pairs"})
     ->ArgsProduct({{0, 1, 2, 3, 4, 5}, {16, 100, 300}})
     ->UseManualTime();
+#ifdef REPEL_BENCH_MUJOCO
+// Where faces meet, else one contact is all.
+BENCHMARK(mujoco_contacts)
+    ->ArgNames({"scene", "pairs", "multiccd"})
+    ->ArgsProduct({{1, 3, 5}, {16, 100, 300}, {0, 1}})
+    ->UseManualTime();
+#endif
 
 int main(int argc, char** argv) {
   return repel::bench::run_benchmarks(argc, argv,
