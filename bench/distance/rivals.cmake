@@ -58,6 +58,8 @@ repel_rival(mujoco "${MUJOCO_LIBRARY}" "${from_pypi}"
 # What is in no package is compiled from its sources, wherever they are.
 set(REPEL_OPENGJK_DIR "" CACHE PATH "Sources of openGJK, to measure it")
 set(REPEL_DGD_DIR "" CACHE PATH "Sources of dgd, differentiable growth distance, to measure it")
+set(REPEL_BOX3D_DIR "" CACHE PATH "Sources of Box3D, to measure it")
+set(REPEL_DRAKE_DIR "" CACHE PATH "Sources of Drake, to measure its library with their headers")
 
 # repel_sources(VARIABLE OUT VERSIONED FILES...): the folder that VARIABLE names, if any, must have
 # FILES. OUT is the version that the project in its file VERSIONED states, or unknown.
@@ -71,7 +73,7 @@ function(repel_sources variable out versioned)
       endif()
     endforeach()
     if(EXISTS "${folder}/${versioned}")
-      file(STRINGS "${folder}/${versioned}" line REGEX "^ *VERSION +[0-9]" LIMIT_COUNT 1)
+      file(STRINGS "${folder}/${versioned}" line REGEX "^[ \t]*VERSION +[0-9]" LIMIT_COUNT 1)
       if(line MATCHES "([0-9][0-9.]*)")
         set(version ${CMAKE_MATCH_1})
       endif()
@@ -101,4 +103,38 @@ set(dgd_repository HybridRobotics/differentiable-growth-distance)
 repel_rival(dgd "${REPEL_DGD_DIR}"
             "cmake -DREPEL_DGD_DIR=FOLDER, the sources of ${dgd_repository} on GitHub"
             VERSION "${dgd_version}" INCLUDES "${REPEL_DGD_DIR}/include")
+
+repel_sources(REPEL_BOX3D_DIR box3d_version CMakeLists.txt
+              src/distance.c src/core.c include/box3d/collision.h)
+if(REPEL_BOX3D_DIR)
+  enable_language(C)
+  add_library(box3d STATIC "${REPEL_BOX3D_DIR}/src/distance.c" "${REPEL_BOX3D_DIR}/src/core.c")
+  target_include_directories(box3d SYSTEM PUBLIC "${REPEL_BOX3D_DIR}/include")
+  target_compile_options(box3d PRIVATE ${flags})
+  set_target_properties(box3d PROPERTIES COMPILE_WARNING_AS_ERROR OFF C_STANDARD 17)
+endif()
+repel_rival(box3d "${REPEL_BOX3D_DIR}"
+            "cmake -DREPEL_BOX3D_DIR=FOLDER, the sources of erincatto/box3d on GitHub"
+            VERSION "${box3d_version}" LIBRARIES box3d)
+
+# The wheel of Drake has no headers, and those that its build writes are not among its sources. The
+# library asks for others of the wheel, and its loader knows where, but not the linker.
+set(drake_version 1.51.1)
+set(drake_library ${REPEL_BENCH_PYPI}/pydrake/lib/libdrake.so)
+set(drake_include ${CMAKE_CURRENT_BINARY_DIR}/drake)
+repel_debian_packages(drake drake_packages)
+find_package(fmt QUIET)
+repel_sources(REPEL_DRAKE_DIR unused "" geometry/scene_graph.h)
+if(REPEL_DRAKE_DIR AND EXISTS ${drake_library} AND fmt_FOUND)
+  set(has_drake TRUE)
+  file(CONFIGURE OUTPUT ${drake_include}/written/drake/common/autodiff_config.h
+       CONTENT "#define DRAKE_INTERNAL_USE_EIGEN_LEGACY_AUTODIFF 1\n")
+  file(CREATE_LINK "${REPEL_DRAKE_DIR}" ${drake_include}/drake SYMBOLIC)
+endif()
+repel_rival(drake "${has_drake}"
+            "apt-get install ${drake_packages}, ${from_pypi}, and \
+cmake -DREPEL_DRAKE_DIR=FOLDER, the sources of RobotLocomotion/drake ${drake_version} on GitHub"
+            VERSION ${drake_version} INCLUDES ${drake_include} ${drake_include}/written
+            LIBRARIES ${drake_library} fmt::fmt
+                      "-Wl,-rpath-link,${REPEL_BENCH_PYPI}/drake.libs")
 target_compile_definitions(repel_bench_rivals INTERFACE REPEL_ABSENT_RIVALS="${absent}")
