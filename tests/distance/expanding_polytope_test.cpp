@@ -117,8 +117,8 @@ TEST(ExpandingPolytope, AnyOtherOneClaimsNothing) {
         face = warm.faces[any(rng) % faces];
         break;
       case 1:
-        face = static_cast<std::uint16_t>((face & 31U) << 5U | (face >> 5U & 31U) |
-                                          (face & 31U << 10U));
+        face = static_cast<std::uint16_t>((face & 15U) << 4U | (face >> 4U & 15U) |
+                                          (face & 15U << 8U));
         break;
       case 2:
         warm.b[any(rng) % 4] = any(rng);

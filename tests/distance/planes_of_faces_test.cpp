@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include <support/families.hpp>
@@ -10,7 +11,6 @@
 namespace repel::detail {
 namespace planes_of_faces_test {
 
-using Planes = PlanesOfFaces<16>;
 constexpr unsigned seed = 6211;
 constexpr double margin = 0x1p-48;  ///< [m] of triangles within 4 m of the origin
 
@@ -35,46 +35,44 @@ std::vector<Triangle> draw(families::Rng& rng, std::size_t count) {
   return triangles;
 }
 
-TEST(PlanesOfFaces, AreThoseOfEachFace) {
+LaneVec corners(const std::vector<Triangle>& triangles, Vec<double> Triangle::*corner) {
+  return LaneVec::of([&](int k) { return triangles[static_cast<std::size_t>(k)].*corner; });
+}
+
+LanePlanes planes_of(const std::vector<Triangle>& four) {
+  return planes_through(corners(four, &Triangle::p), corners(four, &Triangle::q),
+                        corners(four, &Triangle::r), margin);
+}
+
+TEST(PlanesThrough, AreThoseOfEachTriangle) {
   families::Rng rng(seed);
-  for (std::size_t count = 4; count <= 28; ++count) {
-    SCOPED_TRACE(families::of_seed(seed, "faces", static_cast<int>(count)));
-    const std::vector<Triangle> triangles = draw(rng, count);
-    Planes planes;
-    for (std::size_t f = 0; f < count; ++f) {
-      planes.set(f, plane_of(triangles[f]));
-    }
-    ASSERT_TRUE(planes.find(count, 0.0));
-    double least = 10.0;
-    for (std::size_t f = 0; f < count; ++f) {
-      const auto& [p, q, r] = triangles[f];
-      const Vec<double> n = planes.normal(f);
+  for (int i = 0; i < 100; ++i) {
+    SCOPED_TRACE(families::of_seed(seed, "four", i));
+    std::vector<Triangle> four = draw(rng, 4);
+    if (i % 2 == 1) four[3].r = four[3].q + 1e-9 * (four[3].r - four[3].q);
+    const LanePlanes planes = planes_of(four);
+    for (int k = 0; k < 4; ++k) {
+      const Triangle& t = four[static_cast<std::size_t>(k)];
+      const FacePlane one = plane_of(t);
+      const double per_length = 1.0 / std::sqrt(dot(one.n, one.n));
+      EXPECT_EQ(planes.n.at(k), to_vec3(per_length * one.n));
+      EXPECT_EQ(planes.offset[k], per_length * one.offset);
+      const Vec<double> n(planes.n.at(k));
       EXPECT_NEAR(dot(n, n), 1.0, 1e-15);
-      EXPECT_GT(dot(n, cross(q - p, r - p)), 0.0);
-      for (const Vec<double>& corner : {p, q, r}) {
-        EXPECT_NEAR(dot(n, corner), planes.offset(f), 1e-12);
-        EXPECT_LE(dot(n, corner), planes.offset(f) + 1e-15);
+      for (const Vec<double>& corner : {t.p, t.q, t.r}) {
+        EXPECT_NEAR(dot(n, corner), planes.offset[k], 2.0 * margin);
       }
-      least = std::min(least, planes.offset(f));
     }
-    // Wherever the nearest face is, its offset decides.
-    for (std::size_t f = 0; f < count; ++f) {
-      planes.set(f, plane_of(triangles[f]));
-    }
-    EXPECT_FALSE(planes.find(count, least + 1e-12));
   }
 }
 
-TEST(PlanesOfFaces, RefuseAFaceWithoutArea) {
+TEST(PlanesThrough, HaveNoneForATriangleWithoutArea) {
   families::Rng rng(seed);
-  const std::vector<Triangle> triangles = draw(rng, 11);
-  for (std::size_t flat = 0; flat < 11; ++flat) {
-    Planes planes;
-    for (std::size_t f = 0; f < 11; ++f) {
-      const auto& [p, q, r] = triangles[f];
-      planes.set(f, plane_of({p, q, f == flat ? q : r}));
-    }
-    EXPECT_FALSE(planes.find(11, -1.0));
+  for (int flat = 0; flat < 4; ++flat) {
+    std::vector<Triangle> four = draw(rng, 4);
+    Triangle& none = four[static_cast<std::size_t>(flat)];
+    none.r = none.q;
+    EXPECT_EQ(bits_of(planes_of(four).offset > -1.0), 15U & ~(1U << flat));
   }
 }
 

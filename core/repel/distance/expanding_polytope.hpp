@@ -10,7 +10,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <span>
 
+#include <repel/distance/closed_surface.hpp>
 #include <repel/distance/depth.hpp>
 #include <repel/distance/feature.hpp>
 #include <repel/distance/planes_of_faces.hpp>
@@ -32,14 +35,15 @@ class ExpandingPolytope {
   [[nodiscard, gnu::noinline]] Depth run(WarmStart& warm) noexcept {
     const double margin = pair_.margin();
     Depth depth;
-    if (restore(warm, margin)) {
-      depth = expand(margin);
+    if (std::size_t nearest = 0; restore(warm, margin, nearest)) {
+      expand(margin, nearest, depth);
       // Mostly, nothing had to be added.
       if (depth.closed && corner_count_ == warm.size) return depth;
     }
     if (!depth.closed) {
       const int spent = depth.iterations;
-      depth = begin(warm, margin) ? expand(margin) : Depth();
+      depth = Depth();
+      if (begin(warm, margin)) expand(margin, nearest_face(), depth);
       depth.iterations += spent;
     }
     if (depth.closed) save(warm);
@@ -59,19 +63,17 @@ class ExpandingPolytope {
     std::uint32_t name_b;
   };
   struct Face {
-    Vec<double> n;                        ///< unit, outward
-    double offset;                        ///< [m]
-    std::array<std::uint8_t, 3> corners;  ///< counter-clockwise seen from outside
+    Vec<double> n;  ///< unit, outward
+    double offset;  ///< [m]
+    Triangle corners;
   };
   struct Edge {
     std::uint8_t from, to;
   };
 
   /// Adds corners until the nearest face is on the boundary of A - B.
-  Depth expand(double margin) noexcept {
-    Depth depth;
+  void expand(double margin, std::size_t nearest, Depth& depth) noexcept {
     while (depth.iterations < cap) {
-      const std::size_t nearest = nearest_face();
       const Face& face = faces_[nearest];
       depth.value = std::max(0.0, face.offset);
       depth.lower = std::max(0.0, face.offset - margin);
@@ -85,8 +87,8 @@ class ExpandingPolytope {
       }
       depth.closed = reached - face.offset <= margin;
       if (depth.closed || !grow(w, margin)) break;
+      nearest = nearest_face();
     }
-    return depth;
   }
 
   [[nodiscard]] Corner corner(const Convex::Point<double>& a,
@@ -94,13 +96,18 @@ class ExpandingPolytope {
     const Vec<double> turned = rotate(pair_.X_WA, a.p);
     return {turned, turned - (rotate(pair_.X_WB, b.p) + pair_.p_AB), a.name, b.name};
   }
-  [[nodiscard]] Corner named(std::uint32_t name_a, std::uint32_t name_b) const noexcept {
-    return corner(pair_.A.point(name_a), pair_.B.point(name_b));
-  }
   /// The support point of A - B along d.
   [[nodiscard]] Corner support(const Vec<double>& d) const noexcept {
     return corner(pair_.A.support(rotate_transposed(pair_.X_WA, d)),
                   pair_.B.support(rotate_transposed(pair_.X_WB, -d)));
+  }
+  // In place: a copy by the widest registers would wait for the narrower stores.
+  void set_named(std::size_t i, std::uint32_t name_a, std::uint32_t name_b) noexcept {
+    Corner& corner = corners_[i];
+    corner.a = rotate(pair_.X_WA, pair_.A.place(name_a));
+    corner.w = corner.a - (rotate(pair_.X_WB, pair_.B.place(name_b)) + pair_.p_AB);
+    corner.name_a = name_a;
+    corner.name_b = name_b;
   }
 
   /// The names of corner i of the polytope kept in a warm start.
@@ -113,49 +120,43 @@ class ExpandingPolytope {
   /// longer encloses the origin. A closed surface with the origin on the inner side of all faces
   /// surrounds it at least once. So it surrounds every point nearer than the nearest face, and that
   /// point is in A - B, even if the surface is not convex.
-  bool restore(const WarmStart& warm, double margin) noexcept {
+  [[gnu::flatten]] bool restore(const WarmStart& warm, double margin,
+                                std::size_t& nearest) noexcept {
     if (warm.level_a != WarmStart::exact_depth) return false;
     corner_count_ = std::clamp<std::size_t>(warm.size, 4, WarmStart::most_corners);
-    face_count_ = 0;
+    face_count_ = 2 * corner_count_ - 4;
+    const std::span kept(warm.faces.data(), face_count_);
+    if (!read_closed_surface(kept, corner_count_, faces_.data())) return false;
     for (std::size_t i = 0; i < corner_count_; ++i) {
       const std::uint32_t names = word(warm, i);
-      corners_[i] = named(names & 0xFFFFU, names >> 16U);
+      set_named(i, names & 0xFFFFU, names >> 16U);
     }
-    // One bit for each corner reached by an edge.
-    std::array<std::uint32_t, WarmStart::most_corners> to{};
-    PlanesOfFaces<WarmStart::most_corners> planes;
-    face_count_ = 2 * corner_count_ - 4;
-    for (std::size_t f = 0; f < face_count_; ++f) {
-      const std::uint32_t face = warm.faces[f];
-      const std::array<std::uint8_t, 3> at{static_cast<std::uint8_t>(face & 31U),
-                                           static_cast<std::uint8_t>(face >> 5U & 31U),
-                                           static_cast<std::uint8_t>(face >> 10U & 31U)};
-      if (std::max({at[0], at[1], at[2]}) >= corner_count_) return false;
-      to[at[0]] |= 1U << at[1];
-      to[at[1]] |= 1U << at[2];
-      to[at[2]] |= 1U << at[0];
-      faces_[f].corners = at;
-      planes.set(f, plane(at, margin));
+    Lanes least = all_of(std::numeric_limits<double>::infinity());
+    Lanes first{};  // the first faces with these offsets, less their lanes
+    bool inside = true;
+    for (std::size_t f = 0; f < face_count_; f += lane_count) {
+      std::array<LaneVec, 3> w;
+      for (std::size_t k = 0; k < 3; ++k) {
+        w[k] = LaneVec::of([&](int lane) {
+          return corners_[faces_[std::min(f + lane, face_count_ - 1)].corners[k]].w;
+        });
+      }
+      const LanePlanes planes = planes_through(w[0], w[1], w[2], margin);
+      inside = inside && bits_of(planes.offset > margin) == 15U;
+      const auto normals = planes.n.each();
+      for (std::size_t lane = 0; lane < lane_count; ++lane) {
+        faces_[f + lane].n = normals[lane];
+        faces_[f + lane].offset = planes.offset[static_cast<int>(lane)];
+      }
+      first = either(planes.offset < least, all_of(static_cast<double>(f)), first);
+      least = smaller(planes.offset, least);
     }
-    if (!planes.find(face_count_, margin)) return false;
-    for (std::size_t f = 0; f < face_count_; ++f) {
-      faces_[f].n = planes.normal(f);
-      faces_[f].offset = planes.offset(f);
+    nearest = face_count_ - 1;
+    for (int k = 0; k < lane_count; ++k) {
+      const std::size_t f = static_cast<std::size_t>(first[k]) + k;
+      if (least[k] == least_of(least)) nearest = std::min(nearest, f);
     }
-    return is_closed(to);
-  }
-
-  /// Every edge of every face is met by one in the other direction, and no two are the same.
-  [[nodiscard]] bool is_closed(
-      const std::array<std::uint32_t, WarmStart::most_corners>& to) const noexcept {
-    std::size_t different = 0;
-    for (const std::uint32_t ends : to) different += static_cast<std::size_t>(std::popcount(ends));
-    bool closed = different == 3 * face_count_;
-    for (std::size_t f = 0; f < face_count_; ++f) {
-      const auto [p, q, r] = faces_[f].corners;
-      closed = closed && (to[q] >> p & to[r] >> q & to[p] >> r & 1U) != 0U;
-    }
-    return closed;
+    return inside;
   }
 
   /// Keeps the used corners and the faces, if they are few enough.
@@ -165,7 +166,7 @@ class ExpandingPolytope {
     std::array<std::uint8_t, most_corners> number{};  // from 1; 0 for a corner not in use
     if (face_count_ > kept.faces.size()) return;
     for (std::size_t f = 0; f < face_count_; ++f) {
-      std::uint32_t face = 0;
+      Triangle face;
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint8_t i = faces_[f].corners[k];
         const auto [p, w, name_a, name_b] = corners_[i];
@@ -174,9 +175,9 @@ class ExpandingPolytope {
           word(kept, kept.size) = name_a | name_b << 16U;
           number[i] = ++kept.size;
         }
-        face |= (number[i] - 1U) << 5U * k;
+        face[k] = static_cast<std::uint8_t>(number[i] - 1U);
       }
-      kept.faces[f] = static_cast<std::uint16_t>(face);
+      kept.faces[f] = packed(face);
     }
     warm = kept;
   }
@@ -184,8 +185,11 @@ class ExpandingPolytope {
   bool begin(const WarmStart& warm, double margin) noexcept {
     const Vec<double> around[4] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
     for (std::size_t i = 0; i < 4; ++i) {
-      corners_[i] =
-          warm.size == 4 && warm.level_a == 0 ? named(warm.a[i], warm.b[i]) : support(around[i]);
+      if (warm.size == 4 && warm.level_a == 0) {
+        set_named(i, warm.a[i], warm.b[i]);
+      } else {
+        corners_[i] = support(around[i]);
+      }
     }
     corner_count_ = 4;
     face_count_ = 0;
@@ -200,7 +204,6 @@ class ExpandingPolytope {
     return true;
   }
 
-  using Triangle = std::array<std::uint8_t, 3>;
   [[nodiscard]] FacePlane plane(const Triangle& at, double margin) const noexcept {
     return plane_through(corners_[at[0]].w, corners_[at[1]].w, corners_[at[2]].w, margin);
   }

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The planes of the faces of a polytope, in SIMD lanes.
+/// The planes of the faces of a polytope, one by one or in SIMD lanes.
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstring>
+#include <bit>
 
 #include <repel/base/lanes.hpp>
 #include <repel/base/vec.hpp>
@@ -36,57 +34,32 @@ struct FacePlane {
   return {};
 }
 
-/// The planes of the faces of a closed polytope of triangles with at most that many corners, found
-/// together.
-template <std::size_t most_corners>
-class PlanesOfFaces {
- public:
-  void set(std::size_t f, const FacePlane& plane) noexcept {
-    x_[f] = plane.n.x();
-    y_[f] = plane.n.y();
-    z_[f] = plane.n.z();
-    offset_[f] = plane.offset;
-  }
-  /// Call when `count` faces are set. False where a face has no area, or an offset of at most
-  /// `least` [m].
-  [[nodiscard]] bool find(std::size_t count, double least) noexcept {
-    for (std::size_t f = count; f % lane_count != 0; ++f) {
-      x_[f] = x_[0];
-      y_[f] = y_[0];
-      z_[f] = z_[0];
-      offset_[f] = offset_[0];
-    }
-    LaneMask beyond = Lanes{} == Lanes{};
-    for (std::size_t f = 0; f < count; f += lane_count) {
-      const LaneVec n{some(x_, f), some(y_, f), some(z_, f)};
-      const Lanes part = 1.0 / roots(dot(n, n));
-      const Lanes offset = part * some(offset_, f);
-      beyond = beyond & (offset > all_of(least));
-      store(part * n.x, x_, f);
-      store(part * n.y, y_, f);
-      store(part * n.z, z_, f);
-      store(offset, offset_, f);
-    }
-    return bits_of(~beyond) == 0U;
-  }
-  /// Unit, outward.
-  [[nodiscard]] Vec<double> normal(std::size_t f) const noexcept { return {x_[f], y_[f], z_[f]}; }
-  [[nodiscard]] double offset(std::size_t f) const noexcept { return offset_[f]; }
-
- private:
-  using Numbers =
-      std::array<double, (2 * most_corners - 4 + lane_count - 1) / lane_count * lane_count>;
-  [[nodiscard]] static Lanes some(const Numbers& numbers, std::size_t f) noexcept {
-    Lanes lanes;
-    std::memcpy(&lanes, numbers.data() + f, sizeof lanes);
-    return lanes;
-  }
-  static void store(const Lanes& lanes, Numbers& numbers, std::size_t f) noexcept {
-    std::memcpy(numbers.data() + f, &lanes, sizeof lanes);
-  }
-
-  Numbers x_, y_, z_;  ///< normals
-  Numbers offset_;     ///< [m]
+/// The planes of four triangles.
+struct LanePlanes {
+  LaneVec n;     ///< unit, outward
+  Lanes offset;  ///< [m]
 };
+
+/// `plane_through` for four triangles at once, its normals made unit vectors; not a number where
+/// there is none.
+[[nodiscard]] inline LanePlanes planes_through(const LaneVec& p, const LaneVec& q, const LaneVec& r,
+                                               double margin) noexcept {
+  LaneVec n = cross(q - p, r - p);
+  const Lanes at_p = dot(p, n);
+  const Lanes at_q = dot(q, n);
+  const Lanes at_r = dot(r, n);
+  Lanes offset = larger(larger(at_p, at_q), at_r);
+  const Lanes off = offset - smaller(smaller(at_p, at_q), at_r);
+  unsigned slivers = bits_of(~(off * off <= margin * margin * dot(n, n)));
+  for (; slivers != 0U; slivers &= slivers - 1U) {
+    const int k = std::countr_zero(slivers);
+    const auto corner = [k](const LaneVec& v) { return Vec<double>(v.at(k)); };
+    const FacePlane plane = plane_through(corner(p), corner(q), corner(r), margin);
+    n.set(k, plane.n);
+    offset[k] = plane.offset;
+  }
+  const Lanes per_length = 1.0 / roots(dot(n, n));
+  return {per_length * n, per_length * offset};
+}
 
 }  // namespace repel::detail

@@ -91,7 +91,7 @@ struct WarmStart {
   std::uint8_t met_size = 0;             ///< 4 when they are known
   /// Of the polytope of an exact depth, whose `size` corners are named in `a`, `b`, `met_a` and
   /// `met_b`, each by its point of A in the lower half and its point of B in the upper half: the
-  /// corners of each face, five bits each.
+  /// corners of each face, four bits each.
   std::array<std::uint16_t, 2 * most_corners - 4> faces{};
 };
 
