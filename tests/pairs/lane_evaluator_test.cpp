@@ -289,17 +289,23 @@ TEST(LaneEvaluator, RehearsingChangesNothing) {
   EXPECT_EQ(with_lanes.forces.totals.nearest, totals.nearest);
 }
 
-// A group of one pair among many lanes would cost more than the pair alone.
-TEST(LaneEvaluator, FewPairsAreEvaluatedSingly) {
-  test::NearPairs scene(3, seed);
-  for (int i = 0; i < 60; ++i) scene.add(test::random_shape);
-  EveryPair every(scene.world, true);
+/// The slots of the pairs that may go into lanes, after a tick without these.
+std::vector<int> fitting_slots(EveryPair& every) {
   every.use_lanes = false;
   (void)every.tick();
   std::vector<int> fitting;
   for (int slot = 0; slot < every.count(); ++slot) {
     if (every.lanes.may_add(slot)) fitting.push_back(slot);
   }
+  return fitting;
+}
+
+// A group of one pair among many lanes would cost more than the pair alone.
+TEST(LaneEvaluator, FewPairsAreEvaluatedSingly) {
+  test::NearPairs scene(3, seed);
+  for (int i = 0; i < 60; ++i) scene.add(test::random_shape);
+  EveryPair every(scene.world, true);
+  const std::vector<int> fitting = fitting_slots(every);
   ASSERT_GT(fitting.size(), static_cast<std::size_t>(lane_count) + 1);
   const int few = lane_count < 8 ? lane_count / 2 : 3;
   int added = 0;
@@ -327,12 +333,7 @@ TEST(LaneEvaluator, PairsWithoutALaneAreEvaluatedSingly) {
   for (int i = 0; i < 2600; ++i)
     scene.add([](families::Rng&) { return Shape::box({0.1, 0.1, 0.1}); });
   EveryPair every(scene.world, true);
-  every.use_lanes = false;
-  (void)every.tick();
-  std::vector<int> fitting;
-  for (int slot = 0; slot < every.count(); ++slot) {
-    if (every.lanes.may_add(slot)) fitting.push_back(slot);
-  }
+  const std::vector<int> fitting = fitting_slots(every);
   const int all = static_cast<int>(fitting.size());
   const int more = every.lanes.to_add(all);
   EXPECT_EQ(more, 1024);
