@@ -61,6 +61,15 @@ void describe_view(CLI::App& app, Command command, Arguments& a) {
       ->capture_default_str()
       ->needs(view)
       ->check(CLI::Validator(runs::listen_complaint, "ADDRESS:PORT"));
+  CLI::Option* open =
+      app.add_flag_callback(
+             "--open", [&a] { a.session.open = true; },
+             "Open the view in the browser of this desktop (default: if started at its terminal)")
+          ->needs(view);
+  app.add_flag_callback(
+         "--no-open", [&a] { a.session.open = false; }, "Leave it to you to open the view")
+      ->needs(view)
+      ->excludes(open);
   CLI::Option* file =
       app.add_option("--secret", a.session.secret_file,
                      "Secret of the pages, #secret=... behind the address: the first line of FILE, "

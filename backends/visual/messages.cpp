@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <span>
 #include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include <repel/base/setup_error.hpp>
+#include <repel/loop/columns.hpp>
 #include <repel/reduction/shape_mesh.hpp>
 #include <repel/visual/messages.hpp>
 
@@ -113,6 +119,86 @@ void add_laws(const World& world, std::int32_t part, Json& json) {
   json["passable"] = pairs > 0 && passable == pairs;
 }
 
+/// The laws of the pairs, each once, and by pair its place among them.
+std::pair<Json, std::vector<std::size_t>> laws_of(const World& world) {
+  using Key = std::tuple<double, double, double, double, bool, bool>;
+  std::map<Key, std::size_t> known;
+  Json laws = Json::array();
+  std::vector<std::size_t> places;
+  for (const Pair& pair : world.pairs()) {
+    const ForceLaw& law = pair.law;
+    const bool is_hard = law.hold == HoldKind::hard;
+    const Key key{law.range, law.surface_force, law.damping, law.ceiling, law.passable, is_hard};
+    const auto [place, is_new] = known.try_emplace(key, known.size());
+    places.push_back(place->second);
+    if (!is_new) continue;
+    laws.push_back({{"range_m", law.range},
+                    {"surface_force_n", law.surface_force},
+                    {"damping_ns_m", law.damping},
+                    {"passable", law.passable},
+                    {"hard", is_hard}});
+    if (std::isfinite(law.ceiling)) laws.back()["ceiling_n"] = law.ceiling;
+  }
+  return {std::move(laws), std::move(places)};
+}
+
+/// null where it is not known or there is none.
+Json limit(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+/// The joints of an arm by name, with their ends, greatest rates and torques.
+void add_joints(const ArmInfo& arm, Json& json) {
+  for (const ArmLink& link : arm.links_of_model) {
+    const auto known = [](double most) { return most > 0.0 ? limit(most) : Json(nullptr); };
+    json["limits"].push_back({{"name", link.joint_name},
+                              {"lower", limit(link.lower)},
+                              {"upper", limit(link.upper)},
+                              {"rate", known(link.velocity_limit)},
+                              {"effort", known(link.effort_limit)}});
+  }
+}
+
+std::vector<JointType> types_of(const ArmInfo& arm) {
+  std::vector<JointType> types;
+  for (const std::string& joint : arm.joints) {
+    types.push_back(joint == "revolute" ? JointType::revolute : JointType::prismatic);
+  }
+  return types;
+}
+
+/// The names of what `write_signals` writes, as in a CSV log.
+Json signals_of(const ArmInfo& arm) {
+  const std::vector<JointType> types = types_of(arm);
+  const ColumnNames names{types, arm.modules};
+  Json signals = Json::array();
+  const TickRecord none;
+  for_each_field(
+      [&]<class Value>(const TickField& field, const Value& /*x*/) {
+        if constexpr (!std::is_integral_v<Value> && !std::is_enum_v<Value>) {
+          for (std::string& name : names.of<Value>(field)) signals.push_back(std::move(name));
+        }
+      },
+      none);
+  return signals;
+}
+
+void write_signals(const ArmInfo& arm, const TickRecord& k, JsonText& out) {
+  out.name("signals").open('[');
+  for_each_value(k, arm.joints.size(), arm.modules.size(), [&out]<class Value>(const Value& x) {
+    if constexpr (std::is_floating_point_v<Value>) out.number(double{x});
+  });
+  out.close(']');
+}
+
+/// What hard walls hold, if one is near.
+void write_hold(const TickRecord& k, JsonText& out) {
+  if (!k.hold.pair.valid()) return;
+  out.name("hold").open('{').name("pair").integer(k.hold.pair.index);
+  out.name("margin_m").number(k.hold.margin).name("force_n").number(k.held_force);
+  out.close('}');
+}
+
 double us(std::chrono::nanoseconds time) {
   return static_cast<double>(time.count()) / 1e3;
 }
@@ -148,6 +234,8 @@ void write(const ArmInfo& info, const std::set<int>& links, const TickRecord& k,
   for (std::size_t i = 0; i < info.modules.size(); ++i) out.number(k.energy[i]);
   write_inputs(info, k, out.close(']'));
   write_links(info, links, k, out);
+  write_signals(info, k, out);
+  write_hold(k, out);
   out.close('}');
 }
 
@@ -192,6 +280,18 @@ void write(const char* name, std::span<const TickSample> samples, const F& f, Js
   out.close(']');
 }
 
+/// The status of the first of them, and of each at which it differs from the one before.
+void write_changes(std::span<const TickSample> samples, JsonText& out) {
+  out.name("status").open('[');
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (i > 0 && samples[i].status == samples[i - 1].status) continue;
+    out.open('[').integer(samples[i].tick);
+    write(samples[i].status, out);
+    out.close(']');
+  }
+  out.close(']');
+}
+
 void write(std::span<const TickSample> samples, JsonText& out) {
   using Sample = const TickSample&;
   out.open('{').name("tick").open('[');
@@ -205,6 +305,7 @@ void write(std::span<const TickSample> samples, JsonText& out) {
       "compute_us", samples, [](Sample each) { return us(each.times.compute); }, out);
   write(
       "late_us", samples, [](Sample each) { return us(each.times.late); }, out);
+  write_changes(samples, out);
   out.close('}');
 }
 
@@ -222,9 +323,11 @@ std::string scene_message(const SceneInfo& info, const World& world) {
     add_laws(world, static_cast<std::int32_t>(i), json);
     parts.push_back(std::move(json));
   }
+  auto [laws, places] = laws_of(world);
   Json pairs = Json::array();
-  for (const Pair& pair : world.pairs()) {
-    pairs.push_back({pair.a.index, pair.b.index, pair.law.range});
+  for (std::size_t i = 0; i < world.pairs().size(); ++i) {
+    const Pair& pair = world.pairs()[i];
+    pairs.push_back({pair.a.index, pair.b.index, pair.law.range, places[i]});
   }
   for (const GapsInfo& gaps : info.gaps) {
     Json& json = parts.at(static_cast<std::size_t>(gaps.part.index));
@@ -244,7 +347,9 @@ std::string scene_message(const SceneInfo& info, const World& world) {
                     {"tool_body", arm.tool.index},
                     {"max_speed_m_s", arm.max_speed},
                     {"max_turn_rad_s", arm.max_turn},
-                    {"max_lever_rad_s", arm.max_lever_rate}});
+                    {"max_lever_rad_s", arm.max_lever_rate},
+                    {"signals", signals_of(arm)}});
+    add_joints(arm, arms.back());
     add_inputs(arm, arms.back());
     const std::set<int> links = placed_links(info, i);
     if (!links.empty()) arms.back()["links"] = links;
@@ -259,6 +364,7 @@ std::string scene_message(const SceneInfo& info, const World& world) {
              {"bodies", std::move(bodies)},
              {"parts", std::move(parts)},
              {"pairs", std::move(pairs)},
+             {"laws", std::move(laws)},
              {"arms", std::move(arms)}};
   if (is_scripted(info)) scene["scripted"] = true;
   for (const PartId id : info.spare) scene["spare"].push_back(id.index);

@@ -109,8 +109,12 @@ class Fingers(SharedProgram):
                 with self.subTest(width=width, height=height):
                     page = self.open_on((width, height, True))
                     self.assertFalse(page.shown("panel"))
-                    for name in ("canvas", "nearest", "stick-along", "stick-round", "pause"):
+                    for name in ("canvas", "nearest", "pause"):
                         self.assertTrue(page.shown(name), name)
+                    sticks = ("stick-along", "stick-round")
+                    self.assertFalse(any(map(page.shown, sticks)), "nobody drives")
+                    page.take()
+                    self.assertTrue(all(map(page.shown, sticks)))
                     self.assertGreater(self.element("view").rect["height"],
                                        0.75 * height)
                     for opened in (False, True):
@@ -131,8 +135,8 @@ class Fingers(SharedProgram):
     def test_the_sticks_drive(self):
         page = self.open_on(PHONE)
         page.click("view-front")  # looks towards -x: left is -y
-        before = self.push("stick-round", 0, -50, lambda s: s["operator"]["you"],
-                           "the controls are ours")["toolPosition"]
+        page.take()
+        before = page.state()["toolPosition"]
         page.run()
         self.push("stick-round", 0, -50, lambda s: s["toolPosition"][2] > before[2] + 0.03,
                   "the tool goes up")

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <memory>
@@ -67,13 +69,14 @@ TEST(Messages, TheSceneIsOfTheDocumentedForm) {
   const Json scene = Json::parse(scene_message(stage.info, stage.world));
   EXPECT_EQ(keys_of(scene),
             (std::set<std::string>{"type", "version", "name", "rate_hz", "period_us", "mode",
-                                   "duration_s", "bodies", "parts", "pairs", "arms", "scripted"}));
+                                   "duration_s", "bodies", "parts", "pairs", "laws", "arms",
+                                   "scripted"}));
   EXPECT_EQ(scene.at("scripted"), true);
   EXPECT_EQ(scene.at("type"), "scene");
   EXPECT_EQ(scene.at("mode"), "live");
   EXPECT_EQ(scene.at("period_us"), 2500.0);
   EXPECT_EQ(scene.at("bodies"), (Json{"world", "tool", "link"}));
-  EXPECT_EQ(scene.at("pairs"), (Json{{0, 2, 0.02}, {0, 3, 0.01}, {1, 2, 0.03}}));
+  EXPECT_EQ(scene.at("pairs"), (Json{{0, 2, 0.02, 0}, {0, 3, 0.01, 1}, {1, 2, 0.03, 2}}));
   const Json& parts = scene.at("parts");
   ASSERT_EQ(parts.size(), 4U);
   const char* groups[] = {"tool", "link", "obstacle", "obstacle"};
@@ -100,7 +103,92 @@ TEST(Messages, TheSceneIsOfTheDocumentedForm) {
   EXPECT_EQ(parts[0].at("pose"), (Json{0.1, -0.2, 0.3, 0.0, 0.0, 0.0, 1.0}));
   EXPECT_EQ(keys_of(scene.at("arms")[0]),
             (std::set<std::string>{"name", "joints", "modules", "tool_body", "max_speed_m_s",
-                                   "max_turn_rad_s", "max_lever_rad_s"}));
+                                   "max_turn_rad_s", "max_lever_rad_s", "signals"}));
+}
+
+TEST(Messages, EachLawIsToldOnceAndEachPairSaysItsOwn) {
+  Stage stage;
+  const PartId finger = stage.world.add_part(stage.tool, "finger", Shape::sphere(0.01));
+  stage.world.add_pair(finger, PartId{2}, {.range = 0.02});
+  stage.world.add_pair(finger, PartId{3}, {.range = 0.02, .hold = HoldKind::hard});
+  const Json scene = Json::parse(scene_message(stage.info, stage.world));
+  const Json& laws = scene.at("laws");
+  ASSERT_EQ(laws.size(), 4U);
+  EXPECT_EQ(laws[0], (Json{{"range_m", 0.02},
+                           {"surface_force_n", 100.0},
+                           {"damping_ns_m", 50.0},
+                           {"passable", false},
+                           {"hard", false}}));
+  EXPECT_EQ(laws[1].at("ceiling_n"), 10.0);
+  EXPECT_EQ(laws[1].at("passable"), true);
+  EXPECT_EQ(laws[3].at("hard"), true);
+  EXPECT_EQ(scene.at("pairs")[3][3], 0) << "as the first";
+  EXPECT_EQ(scene.at("pairs")[4][3], 3);
+}
+
+// The page draws any of them by these names, so each name has a value and no other.
+TEST(Messages, AnArmHasTheSignalsOfItsLogAndTheLimitsOfItsJoints) {
+  Stage stage;
+  ArmLink hinge{.name = "upper", .joint_name = "shoulder", .lower = -1.0, .upper = 2.0};
+  hinge.effort_limit = 97.6;
+  ArmLink wheel{.joint_name = "wheel", .lower = -infinite, .upper = infinite};
+  stage.info.arms.front().links_of_model = {hinge, wheel};
+  const Json arm = Json::parse(scene_message(stage.info, stage.world)).at("arms")[0];
+  EXPECT_EQ(arm.at("limits")[0], (Json{{"name", "shoulder"},
+                                       {"lower", -1.0},
+                                       {"upper", 2.0},
+                                       {"rate", nullptr},
+                                       {"effort", 97.6}}));
+  EXPECT_TRUE(arm.at("limits")[1].at("upper").is_null());
+
+  TickRecord& record = stage.shot.arms.front();
+  record.p_WT = Vec3(0.1, 0.2, 0.3);
+  record.q = {0.5, -0.25};
+  record.torques = {7.0, 8.0};
+  record.energy = {0.0F, 0.25F};
+  record.gain = 0.75;
+  const Json now = Json::parse(frame_message(stage.info, stage.world, stage.shot, {}, true));
+  const Json& values = now.at("arms")[0].at("signals");
+  const Json& names = arm.at("signals");
+  ASSERT_EQ(values.size(), names.size());
+  const auto value_of = [&](const char* name) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    return found == names.end() ? Json("none") : values.at(
+        static_cast<std::size_t>(found - names.begin()));
+  };
+  EXPECT_EQ(value_of("z_m"), 0.3);
+  EXPECT_EQ(value_of("q1_rad"), 0.5);
+  EXPECT_EQ(value_of("q2_m"), -0.25);
+  EXPECT_EQ(value_of("tau2_n"), 8.0);
+  EXPECT_EQ(value_of("energy_kbb2_j"), 0.25);
+  EXPECT_EQ(value_of("gain"), 0.75);
+  EXPECT_TRUE(value_of("hold_margin_m").is_null()) << "no hard wall is near";
+}
+
+TEST(Messages, AFrameSaysWhatHardWallsHold) {
+  Stage stage;
+  const auto hold_of = [&stage] {
+    const Json frame = Json::parse(frame_message(stage.info, stage.world, stage.shot, {}, true));
+    return frame.at("arms")[0].value("hold", Json());
+  };
+  EXPECT_TRUE(hold_of().is_null());
+  TickRecord& record = stage.shot.arms.front();
+  record.hold.margin = 0.004;
+  record.hold.pair = PairId{1};
+  record.held_force = 12.0;
+  EXPECT_EQ(hold_of(), (Json{{"pair", 1}, {"margin_m", 0.004}, {"force_n", 12.0}}));
+}
+
+// A bit of one tick would be missed in pictures alone.
+TEST(Messages, EveryChangeOfTheStatusHasItsTick) {
+  const Stage stage;
+  TickSample samples[4];
+  for (std::size_t i = 0; i < 4; ++i) samples[i].tick = static_cast<std::int64_t>(100 + i);
+  samples[1].status = samples[2].status = status::saturated;
+  const Json frame =
+      Json::parse(frame_message(stage.info, stage.world, stage.shot, samples, true));
+  EXPECT_EQ(frame.at("recent").at("status"),
+            Json::parse(R"([[100, []], [101, ["saturated"]], [103, []]])"));
 }
 
 TEST(Messages, APartHasWhatIsNotCoveredOfItsMesh) {
@@ -205,7 +293,7 @@ TEST(Messages, AFrameIsOfTheDocumentedForm) {
   stage.shot.pair_count = 1;
   stage.shot.pairs[0].pair = {2};
   stage.shot.pairs[0].force = 12.5;
-  const TickSample samples[] = {{1233, 0.01, 2.0, {}}, {1234, infinite, 0.0, {}}};
+  const TickSample samples[] = {{1233, 0.01, 2.0, {}, 0}, {1234, infinite, 0.0, {}, 0}};
   const Json frame =
       Json::parse(frame_message(stage.info, stage.world, stage.shot, samples, false));
   EXPECT_EQ(keys_of(frame), (std::set<std::string>{"type", "tick", "time_s", "running", "phase",
@@ -226,14 +314,15 @@ TEST(Messages, AFrameIsOfTheDocumentedForm) {
   ASSERT_EQ(frame.at("arms").size(), 1U);
   const Json& arm = frame.at("arms")[0];
   EXPECT_EQ(keys_of(arm), (std::set<std::string>{"force", "torque", "coupling", "lever_nm", "gain",
-                                                 "v", "q", "energy_j"}));
+                                                 "v", "q", "energy_j", "signals"}));
   EXPECT_EQ(arm.at("force"), (Json{1.0, 2.0, 3.0}));
   EXPECT_EQ(arm.at("q"), (Json{0.5, -0.25}));
   EXPECT_EQ(arm.at("energy_j").size(), 2U);
   EXPECT_EQ(frame.at("recent").at("tick"), (Json{1233, 1234}));
   EXPECT_EQ(frame.at("recent").at("nearest_m"), (Json{0.01, nullptr}));
   EXPECT_EQ(keys_of(frame.at("recent")),
-            (std::set<std::string>{"tick", "nearest_m", "force_n", "compute_us", "late_us"}));
+            (std::set<std::string>{"tick", "nearest_m", "force_n", "compute_us", "late_us",
+                                   "status"}));
 }
 
 /// Turns about z by its first joint, then slides along its own x.
@@ -356,7 +445,7 @@ TEST(Messages, WhatIsNoNumberIsNull) {
     Separation& s = near.separation;
     s.distance = s.lower = s.upper = bad;
     s.p_WA = s.p_WB = s.extraction_W = all;
-    const TickSample sample{7, bad, bad, {}};
+    const TickSample sample{7, bad, bad, {}, 0};
     const Json frame =
         Json::parse(frame_message(stage.info, stage.world, stage.shot, {&sample, 1}, true));
     EXPECT_TRUE(frame.at("time_s").is_null());

@@ -105,6 +105,11 @@ export class Cameras {
     this.stage.invalidate();
   }
 
+  // Where the camera is and what it looks at, as look() takes them in one.
+  place() {
+    return [...this.stage.camera.position.toArray(), ...this.controls.target.toArray()];
+  }
+
   follow(on) {
     this.following = on;
     at("follow").setAttribute("aria-pressed", String(on));

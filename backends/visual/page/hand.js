@@ -3,7 +3,7 @@
 // is nothing of it; it can be switched by whoever drives, and is shown to all.
 
 import { state, thisArm, thisArmNow } from "./state.js";
-import { at, finite, fixed, norm, write } from "./words.js";
+import { at, endOf, finite, fixed, norm, write } from "./words.js";
 
 const PATIENCE_MS = 500;  // what was chosen here is shown until the program can have taken it over
 const AXES = ["x", "y", "z"];
@@ -102,14 +102,15 @@ export class Hand {
     at("hand").hidden = at("switches").hidden && at("felt-lever").hidden && !felt;
   }
 
-  // A bar is full at the largest there was, or at `least`.
+  // A bar ends at `least`, or at a round number that holds the largest there was.
   #feel(id, values, unit, least) {
     const row = at(id);
     if (row.hidden) return;
     const there = Boolean(values?.every(finite));
     const size = there ? norm(values) : 0;
-    this.#most[id] = Math.max(this.#most[id] ?? least, size);
-    write(row.querySelector("output"), there ? `${fixed(size, 2)} ${unit}` : "\u2013");
+    this.#most[id] = endOf(this.#most[id] ?? least, size);
+    write(row.querySelector("output"),
+          there ? `${fixed(size, 2)} of ${this.#most[id]} ${unit}` : "\u2013");
     row.querySelector("i").style.transform = `scaleX(${(size / this.#most[id]).toFixed(3)})`;
     const parts = there && values.length === 3
       ? AXES.map((axis, k) => `${axis} ${fixed(values[k], 1)}`).join("  ") : "";

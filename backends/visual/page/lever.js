@@ -2,12 +2,12 @@
 // The lever of the torque arm: a slider that springs back leads it, a bar shows what it would give
 // the hand. A force is shown here where it cannot be felt.
 
-import { at, finite, fixed, write } from "./words.js";
+import { at, endOf, finite, fixed, write } from "./words.js";
 
-const LEAST_SCALE = 1;  // [Nm]: the bar is full at the largest torque there was, or at this
+const LEAST_NM = 1;  // of the end of the bar
 
 export class Lever {
-  #most = LEAST_SCALE;
+  #most = LEAST_NM;
   #fastest = 0;  // [rad/s]
 
   constructor(keyboard, heading) {
@@ -21,7 +21,7 @@ export class Lever {
 
   scene(arm) {
     at("lever-box").hidden = !arm?.modules.includes("torque_arm");
-    this.#most = LEAST_SCALE;
+    this.#most = LEAST_NM;
     this.#fastest = arm?.max_lever_rad_s ?? 0;
   }
 
@@ -41,9 +41,9 @@ export class Lever {
 
   frame(arm) {
     const torque = arm?.lever_nm;
-    write(at("lever-out"), `${fixed(torque, 2)} Nm`);
     const size = finite(torque) ? torque : 0;
-    this.#most = Math.max(this.#most, Math.abs(size));
+    this.#most = endOf(this.#most, Math.abs(size));
+    write(at("lever-out"), `${fixed(torque, 2)} of ${this.#most} N m`);
     at("lever-bar").style.transform = `scaleX(${(size / this.#most).toFixed(3)})`;
   }
 }

@@ -3,36 +3,48 @@
 
 import { Sphere, Vector3 } from "./vendor/three.min.js";
 import { Boxes } from "./boxes.js";
+import { bodiesOf } from "./bodies.js";
 import { Cameras } from "./cameras.js";
+import { follow, startCapture } from "./capture.js";
+import { Charts } from "./charts.js";
 import { Connection } from "./connection.js";
 import { Controls } from "./controls.js";
 import { Drag } from "./drag.js";
 import { covered, startDrawer } from "./drawer.js";
+import { Events } from "./events.js";
 import { Gamepad } from "./gamepad.js";
 import { Gaps } from "./gaps.js";
 import { Fixtures } from "./fixtures.js";
 import { startHelp, toggleHelp } from "./help.js";
 import { Hand } from "./hand.js";
 import { Histogram } from "./histogram.js";
+import { Inspector } from "./inspector.js";
+import { Joints } from "./joints.js";
 import { Keyboard } from "./keyboard.js";
 import { Labels } from "./labels.js";
 import { Lever } from "./lever.js";
 import { Marks } from "./marks.js";
+import { Measure } from "./measure.js";
 import { banner } from "./messages.js";
 import { Parts } from "./parts.js";
+import { startPicking } from "./pick.js";
 import { startProbe } from "./probe.js";
 import { faded, Readouts } from "./readouts.js";
 import { Stage } from "./scene3d.js";
 import { askForSecret, secret, startSecret } from "./secret.js";
 import { settings } from "./settings.js";
 import { startShowMenu } from "./show_menu.js";
+import { SignalHistory } from "./signals.js";
 import { SpaceMouse } from "./spacemouse.js";
 import { Sticks } from "./sticks.js";
 import { state, thisArmNow, toolPose } from "./state.js";
 import { Strip } from "./strips.js";
+import { showTab, startTabs } from "./tabs.js";
 import { startTheme } from "./theme.js";
+import { Tour } from "./tour.js";
 import { Trail } from "./trail.js";
 import { Transport } from "./transport.js";
+import { Tree } from "./tree.js";
 import { Triad } from "./triad.js";
 import { Visuals } from "./visuals.js";
 import { at, norm, write } from "./words.js";
@@ -62,7 +74,16 @@ const gaps = new Gaps(stage, parts);
 const fixtures = new Fixtures(stage);
 const triad = new Triad(at("triad"), stage.camera);
 const trail = new Trail(stage);
-const readouts = new Readouts((pair, range) => marks.colourOf(pair, range), () => hand.arm());
+const signals = new SignalHistory();
+const charts = new Charts(signals);
+const joints = new Joints();
+const inspector = new Inspector(parts);
+const tree = new Tree(parts, inspect);
+const measure = new Measure(stage, labels);
+const readouts = new Readouts((pair, range) => marks.colourOf(pair, range), () => {
+  hand.arm();
+  armShown();
+});
 const histogram = new Histogram(at("histogram"));
 const { history } = state;
 const strips = [
@@ -82,12 +103,15 @@ const hand = new Hand(connection);
 const boxes = new Boxes(connection, stage, parts);
 const drag = new Drag(stage, parts,
                       { mayDrive: () => controls.ours, take: () => controls.take() });
-const sticks = new Sticks(() => controls.take());
+const sticks = new Sticks();
 const headset = new Headset(stage, { boxes, heading, paint, changed: showOrHide });
 const controls = new Controls(connection, [keyboard, gamepad, new SpaceMouse(), drag, sticks,
                                            ...headset.clutches], lever, hand, heading);
 headset.drives(controls);
-startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras, strips, visuals, headset });
+const events = new Events((time) => transport.go(time));
+const tour = new Tour(() => state.scene?.mode === "live" && state.operator?.looksOn === false);
+startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras, strips, visuals, headset,
+             inspector, measure, charts, events });
 
 const toolAt = new Vector3();
 const near = new Set();
@@ -98,6 +122,7 @@ let framed = "";  // the scene that the camera was set up for
 let clearedAt = 0;
 let panelsAt = 0;
 let panelsDue = true;
+let bodies = [];  // of the scene, as people call them
 let turn = 0;  // of the browser, at which it is drawn next
 let rest = 0;
 
@@ -113,11 +138,26 @@ function connected(yes, missing = "") {
   if (!yes) {
     state.operator = null;
     controls.operator({ by: "nobody", you: false, silent: false });
-    sticks.operator({ by: "recording" });
+    sticks.operator({ you: false });
     write(at("status"), "not connected");
     at("status").className = "status bad";
   }
   stage.invalidate();
+}
+
+// Looks at a body, or at none.
+function inspect(body) {
+  inspector.choose(body);
+  tree.mark(body);
+  if (body) showTab("bodies");
+  panelsDue = true;
+}
+
+// What is of the arm whose numbers are shown.
+function armShown() {
+  signals.clear();
+  joints.arm();
+  charts.arm();
 }
 
 connection.on("scene", (scene) => {
@@ -130,6 +170,11 @@ connection.on("scene", (scene) => {
   at("level").max = parts.mostLevels - 1;
   at("level").value = settings.level;
   readouts.scene(scene);
+  bodies = bodiesOf(scene);
+  inspect(null);
+  tree.scene(bodies);
+  events.clear();
+  armShown();
   strips[1].zone = 1000 * Math.max(0, ...scene.parts.map((part) => part.range_m));
   gaps.scene(scene);
   fixtures.scene(scene);
@@ -145,8 +190,11 @@ connection.on("frame", (frame) => {
   if (frame.tick !== null && frame.tick < state.frame?.tick) {
     trail.clear();
     history.clear();
+    events.clear();
   }
   state.frame = frame;
+  signals.add(frame);
+  events.add(frame);
   controls.frame();
   history.add(frame.recent);
   fresh = true;
@@ -160,6 +208,8 @@ connection.on("operator", (operator) => {
   controls.operator(operator);
   sticks.operator(operator);
   transport.operator(operator);
+  events.driver(at("who").textContent);
+  tour.offer();
   stage.invalidate();
 });
 connection.on("refused", (refused) => {
@@ -186,6 +236,7 @@ function move(frame) {
     const tool = parts.corners(state.scene?.arms[0]?.tool_body);
     cameras.frame(() => parts.corners(), new Sphere().setFromPoints(tool).radius || radius / 4);
     showMenu.scale();
+    follow({ cameras, charts });
   }
   near.clear();
   pushing.clear();
@@ -199,6 +250,7 @@ function move(frame) {
   dress();
   transport.frame(frame);
   lever.frame(frame.arms[0]);
+  tour.frame();
   banner("faded", faded(thisArmNow()), true);
   gamepad.rumble(controls.ours ? norm(frame.arms[0]?.force) : 0, performance.now());
   panelsDue = true;
@@ -236,6 +288,7 @@ function paint(now) {
     if (stage.immersive) labels.clear();  // there they would lie on nothing
     gaps.update(marks.unit);
     fixtures.update(state.frame);
+    measure.draw(marks.unit);
     labels.show(now);
     drag.draw();
     triad.draw();
@@ -246,10 +299,15 @@ function paint(now) {
     if (panelsDue && state.frame) {
       readouts.frame(state.frame, now);
       hand.frame();
+      joints.frame();
+      inspector.frame();
+      charts.frame();
     }
     panelsDue = false;
-    for (const strip of strips) strip.draw();
-    histogram.draw();
+    if (!at("pane-now").hidden) {
+      for (const strip of strips) strip.draw();
+      histogram.draw();
+    }
   }
   return drawn;
 }
@@ -289,6 +347,13 @@ function handle(event) {
   return true;
 }
 
+startTabs(() => (panelsDue = true));
+startCapture({ stage, cameras, charts });
+startPicking(stage, parts, visuals, ({ part, body, point }) => {
+  if (measure.on) return measure.put(point);
+  inspect(bodies.find((each) => (part === null ? each.body === body && each.kind !== "obstacle"
+                                               : each.parts.includes(part))) ?? null);
+});
 const showMenu = startShowMenu({ stage, parts, visuals, near, dress,
                                  changed: () => (panelsDue = true) });
 addEventListener("keydown", onKey);

@@ -3,8 +3,9 @@
 
 import { Color, Vector3 } from "./vendor/three.min.js";
 import { Arrows, Beads, Rods } from "./batches.js";
+import { partName } from "./bodies.js";
 import { settings } from "./settings.js";
-import { forceScale, partName, rangeOf, sides, state, toolPose } from "./state.js";
+import { forceScale, rangeOf, sides, state, toolPose } from "./state.js";
 import { colour, onTheme } from "./theme.js";
 import { brief } from "./words.js";
 
@@ -101,17 +102,18 @@ export class Marks {
     for (const pair of pushing) {
       const side = sides(pair);
       if (!side?.point || !pair.n) continue;
-      if (!named.has(side.by)) named.set(side.by, []);
-      named.get(side.by).push({ pair, side });
+      const name = partName(side.by);
+      if (!named.has(name)) named.set(name, []);
+      named.get(name).push({ pair, side });
     }
-    for (const [by, pushes] of [...named].slice(0, MOST_NAMES)) {
+    for (const [name, pushes] of [...named].slice(0, MOST_NAMES)) {
       const [{ pair, side }] = pushes;
       this.#n.fromArray(pair.n).multiplyScalar(side.sign * pair.f * this.scale);
       this.#a.fromArray(side.point).add(this.#n);
       const forces = pushes.slice(0, 3).map((push) => brief(push.pair.f)).join(" + ");
       const age = pair.stale ? `, ${pair.age} ticks old` : "";
-      const text = `${partName(by)} ${forces} N${age}`;
-      this.labels.put(this.#a, by, text, pair.stale ? "stale" : "force");
+      const text = `${name} ${forces} N${age}`;
+      this.labels.put(this.#a, name, text, pair.stale ? "stale" : "force");
     }
   }
 

@@ -3,7 +3,7 @@
 
 import {
   BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineDashedMaterial, LineSegments, Mesh,
-  MeshBasicMaterial, MeshLambertMaterial, Raycaster, Vector3,
+  MeshBasicMaterial, MeshLambertMaterial, Quaternion, Raycaster, Vector3,
 } from "./vendor/three.min.js";
 import { edges, levelFrames, shell, surface } from "./geometry.js";
 import { settings } from "./settings.js";
@@ -33,6 +33,8 @@ export class Parts {
     ghost: new MeshBasicMaterial({ transparent: true, opacity: 0.22, depthTest: false }),
   };
 
+  #hidden = new Set();  // parts that somebody has hidden
+  #marked = { selected: new Set(), highlighted: new Set() };
   #ray = new Raycaster();
   #along = new Vector3();
   #hits = [];
@@ -49,6 +51,8 @@ export class Parts {
   // Everything of a scene, in place of what was there before.
   build(scene) {
     this.scene = scene;
+    this.#hidden.clear();
+    for (const set of Object.values(this.#marked)) set.clear();
     for (const body of this.bodies) this.#drop(body);
     this.bodies = scene.bodies.map(() => new Group());
     for (const body of this.bodies) this.stage.scene.add(body);
@@ -74,6 +78,7 @@ export class Parts {
       const pose = [...holder.position.toArray(), ...holder.quaternion.toArray()];
       const { passable, range_m } = this.scene.parts[k];
       this.parts[k] = this.#part({ levels, group, body, pose, passable, range_m });
+      this.parts[k].holder.visible = !this.#hidden.has(k);
       this.#outline(body);
     }
     this.showLevels();
@@ -120,7 +125,7 @@ export class Parts {
     if (!lines) return;
     const points = [];
     for (const { body: own, holder, border, solid } of this.parts) {
-      if (own !== body || !border || !solid.visible) continue;
+      if (own !== body || !border || !solid.visible || !holder.visible) continue;
       holder.updateMatrix();
       const { array } = border.attributes.position;
       for (let k = 0; k < array.length; k += 3) {
@@ -246,6 +251,82 @@ export class Parts {
     return copy;
   }
 
+  // Hides parts, or shows them again.
+  hide(parts, yes) {
+    for (const k of parts) {
+      if (yes) this.#hidden.add(k);
+      else this.#hidden.delete(k);
+      this.parts[k].holder.visible = !yes;
+    }
+    for (const body of new Set(parts.map((k) => this.parts[k].body))) this.#outline(body);
+    this.stage.invalidate();
+  }
+
+  isHidden(k) {
+    return this.#hidden.has(k);
+  }
+
+  // Whether all parts of a body are hidden.
+  isBodyHidden(body) {
+    const own = [...this.parts.keys()].filter((k) => this.parts[k].body === body);
+    return own.length > 0 && own.every((k) => this.#hidden.has(k));
+  }
+
+  // Lays a light over parts: over those that are looked at, and over those that are pointed at.
+  select(parts) {
+    this.#mark("selected", parts);
+  }
+
+  highlight(parts) {
+    this.#mark("highlighted", parts);
+  }
+
+  #mark(kind, parts) {
+    for (const k of this.#marked[kind]) this.parts[k]?.[kind]?.removeFromParent();
+    this.#marked[kind] = new Set(parts);
+    for (const k of parts) {
+      const { solid, holder } = this.parts[k];
+      const light = new Mesh(solid.geometry, this.#materials.ghost);
+      light.renderOrder = 3;
+      this.parts[k][kind] = light;
+      holder.add(light);
+    }
+    this.stage.invalidate();
+  }
+
+  // The lengths of the edges of a box around parts of one body, in its axes [m].
+  sizeOf(parts) {
+    let whole = null;
+    for (const k of parts) {
+      const { solid, holder } = this.parts[k];
+      solid.geometry.computeBoundingBox();
+      holder.updateMatrix();
+      const box = solid.geometry.boundingBox.clone().applyMatrix4(holder.matrix);
+      whole = whole?.union(box) ?? box;
+    }
+    return whole === null || whole.isEmpty() ? [0, 0, 0] : whole.getSize(new Vector3()).toArray();
+  }
+
+  // Where a part is in the world, as a pose of the wire.
+  poseOf(part) {
+    const { holder } = this.parts[part] ?? {};
+    if (!holder) return null;
+    holder.updateWorldMatrix(true, false);
+    const [position, turn] = [new Vector3(), new Quaternion()];
+    holder.matrixWorld.decompose(position, turn, this.#along);
+    return [...position.toArray(), ...turn.toArray()];
+  }
+
+  // By solid that is seen, and not through which something else is: its part.
+  seenSolids() {
+    const solids = new Map();
+    this.parts.forEach(({ solid, holder, body, hides }, k) => {
+      const seen = solid.visible && holder.visible && this.bodies[body]?.visible !== false;
+      if (seen && !hides) solids.set(solid, k);
+    });
+    return solids;
+  }
+
   // What a part hangs on, if its body is there.
   seen(part) {
     const { holder, body } = this.parts[part] ?? {};
@@ -257,7 +338,8 @@ export class Parts {
   }
 
   counts() {
-    const seen = (key) => this.parts.filter((part) => part[key]?.visible).length;
+    const seen = (key) => this.parts.filter((part) => part.holder.visible && part[key]?.visible)
+      .length;
     return { parts: seen("solid"), levels: seen("frames"), zones: seen("zone") };
   }
 

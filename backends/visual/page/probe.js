@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the page shows, for tests, for pictures of it and for the console: window.repel.state(),
-// distanceSpan(), firstPicture(), pixels(), tinted(), extent(), look(), adapt(), send(),
+// distanceSpan(), firstPicture(), pixels(), tinted(), extent(), project(), look(), adapt(), send(),
 // keyInRoom(), toRoom(), pose().
 
 import { Vector3 } from "./vendor/three.min.js";
@@ -9,7 +9,7 @@ import { state, toolPose } from "./state.js";
 import { theme } from "./theme.js";
 
 export function startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras, strips,
-                             visuals, headset }) {
+                             visuals, headset, inspector, measure, charts, events }) {
   window.repel = {
     state() {
       const { frame, scene, operator } = state;
@@ -37,6 +37,10 @@ export function startProbe({ connection, stage, parts, marks, gaps, fixtures, ca
         hand: frame?.arms?.[0] ? { ...frame.arms[0], energy_j: undefined } : null,
         camera: { mode: cameras.mode, following: cameras.following,
                   position: stage.camera.position.toArray() },
+        inspected: inspector.body?.name ?? null,
+        measured: measure.ends,
+        charts: { names: charts.names, points: charts.points, paused: charts.paused },
+        events: events.count,
         xr: headset.told,
         xr_latency_ms: headset.latency,  // from the frame of a pose to the command: p50, p99, max
         theme: theme(),
@@ -54,6 +58,8 @@ export function startProbe({ connection, stage, parts, marks, gaps, fixtures, ca
     pixels: () => stage.pixels(),
     tinted: (colour, within) => stage.tinted(colour, within),
     extent: () => cameras.extent(),
+    // Where a point of the world is seen: -1 to 1 to the right and up.
+    project: (point) => new Vector3().fromArray(point).project(stage.camera).toArray(),
     // Whether the scene may be drawn coarser on a slow machine.
     adapt: (yes) => stage.quality.adapt(yes),
     send: (message) => connection.send(message),

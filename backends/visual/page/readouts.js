@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The words and numbers: status, phase, the big numbers, the nearest pairs, the energies.
 
+import { partName, together } from "./bodies.js";
 import { moduleWords } from "./module_words.js";
-import { partName, pushes, sides, state, thisArm, thisArmNow } from "./state.js";
+import { pushes, sides, state, thisArm, thisArmNow } from "./state.js";
 import {
   at, brief, describe, finite, fixed, Held, mm, norm, pushesInWords, scriptInWords, write,
 } from "./words.js";
 
 const ROWS = 5;
+const LATE_MS = 5000;  // as long it is said that ticks were late
 const FADED = 0.995;  // gain of the forces below which it is said that they are faded
 
 export class Readouts {
   #status = new Held(700);
   #rows = [];
   #energies = [];
+  #misses = 0;
+  #missedAt = -Infinity;
 
   // `colourOf(pair)`: that of the thread in the scene. `armChosen` hears when another arm is shown.
   constructor(colourOf, armChosen) {
@@ -34,6 +38,10 @@ export class Readouts {
     write(at("mode"), "replay");
     const ranges = scene.parts.map((part) => part.range_m).filter((range) => range > 0);
     if (ranges.length > 0) write(at("ramp-text"), `${mm(Math.max(...ranges), 0)} to 0 mm`);
+    const walls = scene.parts.filter((part) => part.group === "obstacle");
+    at("wall-key").hidden = walls.every((part) => part.passable);
+    at("membrane-key").hidden = !walls.some((part) => part.passable);
+    at("stale-key").hidden = true;
     this.#arms(scene.arms);
   }
 
@@ -65,6 +73,7 @@ export class Readouts {
     const ask = this.#energies.length > 0 ? "What a module does is said here: point at one." : "";
     write(at("energy-what"), ask);
     at("energy").replaceChildren(...this.#energies.map(({ row }) => row));
+    at("energy-card").hidden = this.#energies.length === 0;
   }
 
   frame(frame, now) {
@@ -77,8 +86,13 @@ export class Readouts {
   }
 
   #showStatus(frame, now) {
+    const misses = state.timing?.misses ?? 0;
+    if (misses > this.#misses) this.#missedAt = now;
+    this.#misses = misses;
     const some = frame.status.length > 0;
-    const { level, text } = this.#status.next(describe(frame.status), now, some);
+    const said = some || misses === 0 ? describe(frame.status)
+                                      : lateInWords(misses, now - this.#missedAt < LATE_MS);
+    const { level, text } = this.#status.next(said, now, some);
     const words = state.connected ? text : "not connected";
     write(at("status"), words);
     at("status").title = words;
@@ -99,19 +113,27 @@ export class Readouts {
   }
 
   #showPairs(frame) {
-    const asked = `${frame.evaluated ?? "\u2013"} of ${frame.of ?? "\u2013"} evaluated`;
+    const near = `${frame.near ?? "\u2013"} near, of ${frame.of ?? "\u2013"}`;
     const left = frame.pairs_omitted > 0 ? `, ${frame.pairs_omitted} not shown` : "";
-    write(at("pair-counts"), asked + left);
+    write(at("pair-counts"), near + left);
+    at("pair-counts").title = `${frame.evaluated ?? "\u2013"} evaluated in this tick`;
+    if (frame.pairs.some((pair) => pair.stale)) at("stale-key").hidden = false;
+    const groups = together(frame.pairs);
+    at("pairs-table").hidden = groups.length === 0;
     this.#rows.forEach(({ row, cells, dot, name }, k) => {
-      const pair = frame.pairs[k];
+      const { pairs: [pair], force } = groups[k] ?? { pairs: [] };
       const side = pair && sides(pair);
+      row.hidden = !side;
       row.classList.toggle("old", Boolean(pair?.stale));
       dot.hidden = !side;
       write(name, side ? `${partName(side.pushed)} \u2013 ${partName(side.by)}` : "");
       write(cells[1], side ? mm(pair.d) : "");
-      write(cells[2], side ? (pair.f > 0 ? fixed(pair.f, 1) : "0") : "");
+      write(cells[2], side ? (force > 0 ? fixed(force, 1) : "0") : "");
       if (!side) return;
-      row.title = `${name.textContent}${pair.stale ? `, answer ${pair.age} ticks old` : ""}`;
+      const parts = [side.pushed, side.by].map((index) => state.scene.parts[index].name);
+      const count = groups[k].pairs.length;
+      row.title = parts.join(" \u2013 ") + (count > 1 ? `, and ${count - 1} more` : "") +
+        (pair.stale ? `, answer ${pair.age} ticks old` : "");
       const tint = this.colourOf(pair);
       dot.style.setProperty("--c", tint.getStyle());
     });
@@ -127,6 +149,12 @@ export class Readouts {
       bar.classList.toggle("gives", energy < 0);
     });
   }
+}
+
+// Of late ticks it is not said that all is well.
+function lateInWords(misses, lately) {
+  const ticks = misses === 1 ? "1 tick was" : `${misses} ticks were`;
+  return { level: lately ? "warn" : "good", text: `${ticks} late${lately ? "" : ", none now"}` };
 }
 
 // Whether and why forces are not what the walls ask for.

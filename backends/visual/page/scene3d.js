@@ -183,6 +183,14 @@ export class Stage {
     this.invalidate();
   }
 
+  // The finest drawing there is, as a file of an image, to `done(blob)`.
+  picture(done) {
+    this.#refine(LEVELS[0]);
+    this.renderer.render(this.scene, this.camera);
+    this.canvas.toBlob(done);
+    this.#refine();
+  }
+
   // Of the finest drawing, whatever the machine manages.
   #bytes() {
     this.#refine(LEVELS[0]);

@@ -18,6 +18,9 @@ const DEFAULTS = {
   level: 1,
   forceScale: 0,  // [m/N]; 0: as the scene asks for
   legend: innerWidth > 1100,
+  tab: "now",  // of the readings
+  charts: [],  // by chart: the names of its signals
+  toured: false,  // the tour was offered
   driveSpeed: 0.6,  // of the largest that the arm allows
   deadBand: 0.08,  // of a device's range
   deviceScale: 1,

@@ -93,7 +93,6 @@ export function forceScale() {
 
 export const thisArm = () => state.scene?.arms[state.arm] ?? null;
 export const thisArmNow = () => state.frame?.arms[state.arm] ?? null;
-export const partName = (index) => state.scene?.parts[index]?.name ?? "?";
 export const rangeOf = (pair) => state.scene?.pairs[pair.i]?.[2];
 
 // Where the tool of an arm is in a frame, and null when it is not told.
@@ -115,7 +114,7 @@ export function sides(pair) {
 const LEAST_PUSH = 0.05;  // [N]: less is not called a push
 
 // Who pushes: how many bodies the tools, how many the links, and the pair that pushes hardest. What
-// stands fixed is one body, in which each obstacle counts for itself. Where two parts that can move
+// stands fixed is one body, in which each obstacle counts for itself, a mesh as one. Where two parts that can move
 // meet, each is pushed by the other.
 export function pushes(pairs) {
   const tool = new Set();
@@ -128,7 +127,7 @@ export function pushes(pairs) {
     if (!parts[a] || !parts[b]) continue;
     for (const [pushed, by] of [[a, b], [b, a]]) {
       const whose = { tool, link: links }[parts[pushed].group];
-      whose?.add(parts[by].body > 0 ? `body ${parts[by].body}` : `part ${by}`);
+      whose?.add(parts[by].body > 0 ? `body ${parts[by].body}` : parts[by].of || `part ${by}`);
     }
     if (pair.f > (hardest?.f ?? 0)) hardest = pair;
   }

@@ -21,7 +21,7 @@ class Stick {
   held = false;
   #finger = null;
 
-  constructor(element, taken) {
+  constructor(element) {
     this.element = element;
     this.knob = element.querySelector("i");
     element.addEventListener("pointerdown", (event) => {
@@ -30,7 +30,6 @@ class Stick {
       this.held = true;
       element.setPointerCapture(event.pointerId);
       this.#lead(event);
-      taken();
     });
     element.addEventListener("pointermove", (event) => this.#lead(event));
     for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
@@ -65,10 +64,9 @@ export class Sticks {
   name = "sticks";
   #tilts = false;
 
-  // `take()` asks for the controls when a stick is touched.
-  constructor(take) {
-    this.along = new Stick(at("stick-along"), take);
-    this.round = new Stick(at("stick-round"), take);
+  constructor() {
+    this.along = new Stick(at("stick-along"));
+    this.round = new Stick(at("stick-round"));
     at("tilt").addEventListener("click", () => this.#switch());
     // A finger whose release is not seen would drive for ever.
     addEventListener("blur", () => this.#let());
@@ -87,9 +85,9 @@ export class Sticks {
     this.round.let();
   }
 
-  // There is nothing to touch for whoever cannot drive.
-  operator({ by, looksOn }) {
-    at("sticks").hidden = looksOn === true || by === "recording";
+  // There is nothing to touch for whoever does not drive.
+  operator({ you }) {
+    at("sticks").hidden = you !== true;
     if (at("sticks").hidden) this.#let();
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pause, steps, restart; of a replay also time and speed.
 
+import { asked } from "./capture.js";
 import { state } from "./state.js";
 import { at, finite, fixed, write } from "./words.js";
 
@@ -38,10 +39,15 @@ export class Transport {
     this.#followLink();
   }
 
-  // A report links to its slowest ticks as #t=SECONDS: there a replay stops and is looked at.
+  // A report links to its slowest ticks as #t=SECONDS.
   #followLink() {
-    const time = Number(/^#t=([0-9.]+)$/.exec(location.hash)?.[1] ?? NaN);
-    if (!this.#replay || !finite(time)) return;
+    const { time } = asked();
+    if (finite(time)) this.go(time);
+  }
+
+  // There a replay stops and is looked at.
+  go(time) {
+    if (!this.#replay) return;
     this.connection.send({ type: "pause" });
     this.connection.send({ type: "seek", time_s: time });
   }

@@ -100,10 +100,19 @@ export class Visuals {
     return settings.robot === "looks" && settings.levels === "none";
   }
 
+  // By mesh that is seen: the body that it shows.
+  seenMeshes() {
+    return new Map([...this.#bodies].filter(([, mesh]) => mesh.visible && mesh.parent?.visible)
+      .map(([body, mesh]) => [mesh, body]));
+  }
+
   // The base has no parts of its own, and stands there either way.
   show() {
     for (const mesh of this.#meshes()) {
       mesh.visible = this.shown || mesh === this.#bodies.get(BASE);
+    }
+    for (const [body, mesh] of this.#bodies) {
+      if (this.parts.isBodyHidden(body)) mesh.visible = false;
     }
     this.stage.invalidate();
   }

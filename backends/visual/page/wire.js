@@ -23,9 +23,9 @@ function level(x) {
 }
 
 function part(x) {
-  const { name, body, group, arm, pose: at, passable, range_m, levels, gaps, gap_count } =
+  const { name, of, body, group, arm, pose: at, passable, range_m, levels, gaps, gap_count } =
     object(x);
-  return { name: text(name) || "?", body, group: text(group), arm: number(arm) ?? 0, pose: pose(at),
+  return { name: text(name) || "?", of: text(of), body, group: text(group), arm: number(arm) ?? 0, pose: pose(at),
            passable: passable === true, range_m: number(range_m) ?? 0,
            levels: list(levels).map(level), gap_count: number(gap_count) ?? 0,
            gaps: list(gaps).map((gap) => vector(gap, 4)).filter((gap) => gap !== null) };
@@ -48,10 +48,24 @@ function visual(x) {
            color: vector(color), name: text(name), vertices: points, triangles: corners };
 }
 
+function limits(x) {
+  const { name, lower, upper, rate, effort } = object(x);
+  return { name: text(name), lower: number(lower), upper: number(upper), rate: number(rate),
+           effort: number(effort) };
+}
+
+function law(x) {
+  const { range_m, surface_force_n, damping_ns_m, ceiling_n, passable, hard } = object(x);
+  return { range_m: number(range_m), surface_force_n: number(surface_force_n),
+           damping_ns_m: number(damping_ns_m), ceiling_n: number(ceiling_n),
+           passable: passable === true, hard: hard === true };
+}
+
 function arm(x) {
-  const { name, modules, tool_body, max_speed_m_s, max_turn_rad_s, max_lever_rad_s, fixtures,
+  const { name, joints, limits: ends, signals, modules, tool_body, max_speed_m_s, max_turn_rad_s, max_lever_rad_s, fixtures,
           compliant, scale, hands, links } = object(x);
-  return { name: text(name), modules: list(modules).map(text), tool_body,
+  return { name: text(name), joints: list(joints).map(text), limits: list(ends).map(limits),
+           signals: list(signals).map(text), modules: list(modules).map(text), tool_body,
            max_speed_m_s: number(max_speed_m_s), max_turn_rad_s: number(max_turn_rad_s),
            max_lever_rad_s: number(max_lever_rad_s), fixtures: list(fixtures).map(fixture),
            compliant: list(compliant).map(text), scales: Array.isArray(scale),
@@ -68,6 +82,7 @@ export function scene(x) {
     bodies: list(x.bodies).map(text),
     parts: list(x.parts).map(part),
     pairs: list(x.pairs).map((pair) => vector(pair) ?? vector(pair, 2)),
+    laws: list(x.laws).map(law),
     arms: list(x.arms).map(arm),
     visuals: list(x.visuals).map(visual).filter((each) => each !== null),
     spare: list(x.spare).filter(Number.isInteger),
@@ -93,15 +108,23 @@ function pair(x) {
 
 function armNow(x) {
   const { force, torque, coupling, lever_nm, gain, energy_j, guides, guide_strength, compliant,
-          compliant_frame, scale, grip_n, grip_nm, second_grip_n, second_grip_nm, links } =
-    object(x);
+          compliant_frame, scale, grip_n, grip_nm, second_grip_n, second_grip_nm, links, signals,
+          hold } = object(x);
   return { force: vector(force), torque: vector(torque), coupling: vector(coupling),
            lever_nm: number(lever_nm), gain: number(gain), energy_j: numbers(energy_j),
            guides: list(guides).map(text), guide_strength: number(guide_strength),
            compliant: list(compliant).map(text), compliant_frame: text(compliant_frame),
            scale: number(scale), grip_n: vector(grip_n), grip_nm: vector(grip_nm),
            second_grip_n: vector(second_grip_n), second_grip_nm: vector(second_grip_nm),
-           links: list(links).map(pose) };
+           links: list(links).map(pose), signals: numbers(signals),
+           hold: hold ? { pair: hold.pair, margin_m: number(hold.margin_m),
+                          force_n: number(hold.force_n) } : null };
+}
+
+// [tick, the bits that are set from then on]
+function change(x) {
+  const [tick, bits] = list(x);
+  return [tick, list(bits).map(text).filter(Boolean)];
 }
 
 export function frame(x) {
@@ -117,11 +140,14 @@ export function frame(x) {
     absent: list(x.absent).filter(Number.isInteger),
     pairs: list(x.pairs).map(pair),
     pairs_omitted: number(x.pairs_omitted) ?? 0,
+    near: number(x.near),
     evaluated: number(x.evaluated),
     of: number(x.of),
     arms: list(x.arms).map(armNow),
     recent: { tick: numbers(recent.tick), nearest_m: numbers(recent.nearest_m),
-              force_n: numbers(recent.force_n) },
+              force_n: numbers(recent.force_n), compute_us: numbers(recent.compute_us),
+              late_us: numbers(recent.late_us),
+              status: list(recent.status).map(change).filter(([tick]) => finite(tick)) },
   };
 }
 

@@ -23,6 +23,14 @@ export function brief(x) {
 
 export const norm = (v) => (v ? Math.hypot(...v) : 0);
 
+// The end of a bar that stood at `end` and must hold `size`: it stays, or is the next of 1, 2, 5
+// times a power of ten, so that a number can stand at it.
+export function endOf(end, size) {
+  if (size <= end) return end;
+  const power = 10 ** Math.floor(Math.log10(size));
+  return Number(([1, 2, 5, 10].find((k) => k * power >= size) * power).toPrecision(1));
+}
+
 // Sets a text only where it changed: the browser lays out again for every one that is set.
 export function write(element, text) {
   if (element.textContent !== text) element.textContent = text;

@@ -21,8 +21,11 @@ Tap::Tap(const World& world, const TapOptions& options)
 
 void Tap::note(const Coprocessor& coprocessor, std::span<const TickRecord* const> arms,
                const TickTimes& times) noexcept {
-  samples_.draft() = {arms.front()->tick, arms.front()->pairs.nearest,
-                      arms.front()->virtual_force.force.norm(), times};
+  const TickRecord& first = *arms.front();
+  Status status = 0;
+  for (const TickRecord* arm : arms) status |= arm->status;
+  samples_.draft() = {first.tick, first.pairs.nearest, first.virtual_force.force.norm(), times,
+                      status};
   (void)samples_.post();
   if (has_log_) {
     fill(log_.draft(), coprocessor, arms, times);

@@ -43,6 +43,7 @@ struct TickSample {
   double nearest = std::numeric_limits<double>::infinity();  ///< [m] least signed distance
   double force = 0.0;                                        ///< [N] on the tool of the first arm
   TickTimes times;                                           ///< of the tick
+  Status status = 0;                                         ///< of all arms together
 };
 
 /// Capacities of a tap.

@@ -10,6 +10,7 @@
 
 #include <repel/network/elements/fixture.hpp>
 #include <repel/network/modules/relief.hpp>
+#include <repel/world/arm.hpp>
 #include <repel/world/arm_kinematics.hpp>
 #include <repel/world/world.hpp>
 
@@ -21,6 +22,7 @@ struct ArmInfo {
   BodyId tool;                       ///< moves with its tool frame
   std::vector<BodyId> links;         ///< those with parts
   std::vector<std::string> joints;   ///< "revolute" or "prismatic", base outward
+  std::vector<ArmLink> links_of_model{};  ///< names and limits of the joints; may be left out
   std::vector<std::string> modules;  ///< of its network, in the same order
   std::vector<std::string> phases;   ///< names of the phases of its script; none: it has none
   double max_speed = 0.25;           ///< [m/s] maximum command of its master

@@ -30,6 +30,7 @@ namespace repel::visual {
     arm.name = described.name;
     arm.tool = cell.layout(i).tool;
     for (const LinkBody& link : cell.layout(i).links) arm.links.push_back(link.body);
+    arm.links_of_model = described.model.links;
     for (const ArmLink& link : described.model.links) {
       arm.joints.emplace_back(link.type == JointType::revolute ? "revolute" : "prismatic");
     }

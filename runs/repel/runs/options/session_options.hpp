@@ -20,6 +20,7 @@ namespace repel::runs {
 struct SessionOptions {
   bool view = false;
   std::string listen = "127.0.0.1:8448";  ///< ADDRESS:PORT of the live view
+  std::optional<bool> open{};             ///< in a browser of this machine; none: if at a terminal
   std::string page;                       ///< folder of the files of the page; empty: found
   std::string device;                     ///< input device; empty: none
   std::string secret_file;                ///< its first line is the secret of pages; empty: none

@@ -15,6 +15,7 @@
 
 #include <repel/common/complaint.hpp>
 #include <repel/host/times.hpp>
+#include <repel/loop/columns.hpp>
 
 namespace repel::runs {
 namespace {
@@ -32,32 +33,6 @@ std::string or_nothing(double value) {
   return std::isfinite(value) ? to_text(value) : std::string();
 }
 
-/// The columns of a field of every arm.
-template <class Value>
-std::vector<std::string> columns_of(const TickField& field, const ArmHeading& arm) {
-  const std::string pattern = field.column;
-  std::vector<std::string> names;
-  const auto add = [&names](std::string of, const std::string& name) {
-    const std::size_t star = of.find('*');
-    names.push_back(star == std::string::npos ? of : of.replace(star, 1, name));
-  };
-  if (pattern.empty()) return names;
-  if constexpr (std::is_same_v<Value, JointNumbers>) {
-    const std::size_t blank = pattern.find(' ');
-    for (std::size_t i = 0; i < arm.joints.size(); ++i) {
-      const bool turns = arm.joints[i] == JointType::revolute;
-      add(turns ? pattern.substr(0, blank) : pattern.substr(blank + 1), std::to_string(i + 1));
-    }
-  } else if constexpr (std::is_same_v<Value, ModuleEnergies>) {
-    for (const std::string& module : arm.modules) add(pattern, module);
-  } else if constexpr (std::is_same_v<Value, Vec3>) {
-    for (const char* axis : {"x", "y", "z"}) add(pattern, axis);
-  } else {
-    add(pattern, {});
-  }
-  return names;
-}
-
 void write_value(bool x, std::ostream& file) {
   file << ',' << (x ? 1 : 0);
 }
@@ -70,15 +45,13 @@ void write_value(std::floating_point auto x, std::ostream& file) {
 void write_value(Stop stop, std::ostream& file) {
   file << ',' << to_text(stop);
 }
-void write_value(const Vec3& v, std::ostream& file) {
-  for (const double x : v) write_value(x, file);
-}
 
 void write_names(const ArmHeading& arm, std::ostream& file) {
   const TickRecord none;
+  const ColumnNames names{arm.joints, arm.modules};
   for_each_field(
       [&](const TickField& field, const auto& x) {
-        for (const std::string& name : columns_of<std::remove_cvref_t<decltype(x)>>(field, arm)) {
+        for (const std::string& name : names.of<std::remove_cvref_t<decltype(x)>>(field)) {
           file << ',' << cell_of(arm.prefix() + name);
         }
       },
@@ -86,22 +59,8 @@ void write_names(const ArmHeading& arm, std::ostream& file) {
 }
 
 void write_values(const TickRecord& k, const ArmHeading& arm, std::ostream& file) {
-  for_each_field(
-      [&](const TickField& field, const auto& x) {
-        using Value = std::remove_cvref_t<decltype(x)>;
-        if (*field.column == '\0') return;
-        const auto write_first = [&](const auto& all, std::size_t count) {
-          for (std::size_t i = 0; i < count; ++i) write_value(all[i], file);
-        };
-        if constexpr (std::is_same_v<Value, JointNumbers>) {
-          write_first(x, arm.joints.size());
-        } else if constexpr (std::is_same_v<Value, ModuleEnergies>) {
-          write_first(x, arm.modules.size());
-        } else if constexpr (!std::is_same_v<Value, Wrench>) {
-          write_value(x, file);
-        }
-      },
-      k);
+  for_each_value(k, arm.joints.size(), arm.modules.size(),
+                 [&file](const auto& x) { write_value(x, file); });
 }
 
 class CsvLog final : public TickLog {

@@ -4,6 +4,7 @@
 #include <repel/base/setup_error.hpp>
 #include <repel/runs/options/listening.hpp>
 #include <repel/runs/view/arm_inputs_info.hpp>
+#include <repel/runs/view/browser.hpp>
 #include <repel/runs/view/visuals_info.hpp>
 
 #ifdef REPEL_RUNS_VISUAL
@@ -89,6 +90,7 @@ class ServedView final : public View {
       : served_(info, world, tap, controls, options_of(session, device, controls)) {
     const bool is_own = session.tls == "self";
     announce(session, served_.url(), is_own ? visual::fingerprint_of(tls_of(session)) : "");
+    open_browser(served_.url(), session.open);
   }
 
  private:

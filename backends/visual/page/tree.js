@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The bodies of the scene as a list: to hide and show them, and to choose one to look at closely.
+
+import { at, write } from "./words.js";
+
+const MOST = 200;  // rows: more are found by their name
+const GROUPS = [["tool", "Tool"], ["link", "Links"], ["obstacle", "Obstacles"]];
+
+export class Tree {
+  #bodies = [];
+
+  // `parts` hides and highlights; `choose(body)` hears which one is looked at.
+  constructor(parts, choose) {
+    Object.assign(this, { parts, choose });
+    at("tree-find").addEventListener("input", () => this.#list());
+    at("tree-all").addEventListener("click", () => {
+      for (const body of this.#bodies) parts.hide(body.parts, false);
+      this.#list();
+    });
+  }
+
+  scene(bodies) {
+    this.#bodies = bodies;
+    at("tree-find").value = "";
+    this.#list();
+  }
+
+  // The one that is looked at.
+  mark(body) {
+    for (const button of at("tree").querySelectorAll("button")) {
+      button.setAttribute("aria-pressed", String(button.dataset.id === body?.id));
+    }
+  }
+
+  #list() {
+    const wanted = at("tree-find").value.trim().toLowerCase();
+    const found = this.#bodies.filter(({ name }) => name.toLowerCase().includes(wanted));
+    const left = found.length - MOST;
+    const shown = found.slice(0, MOST);
+    at("tree").replaceChildren(...GROUPS.flatMap(([kind, title]) => {
+      const rows = shown.filter((body) => body.kind === kind).map((body) => this.#row(body));
+      if (rows.length === 0) return [];
+      const heading = document.createElement("h3");
+      heading.textContent = title;
+      const list = document.createElement("ul");
+      list.append(...rows);
+      return [heading, list];
+    }));
+    write(at("tree-left"), left > 0 ? `${left} more: type a part of the name`
+                                    : found.length === 0 ? "none of that name" : "");
+  }
+
+  #row(body) {
+    const row = document.createElement("li");
+    const box = row.appendChild(document.createElement("input"));
+    box.type = "checkbox";
+    box.checked = !body.parts.every((k) => this.parts.isHidden(k));
+    box.setAttribute("aria-label", `show ${body.name}`);
+    box.addEventListener("change", () => this.parts.hide(body.parts, !box.checked));
+    const button = row.appendChild(document.createElement("button"));
+    button.type = "button";
+    button.dataset.id = body.id;
+    button.textContent = body.name;
+    if (body.parts.length > 1) {
+      button.title = `${body.parts.length} convex parts`;
+      row.appendChild(document.createElement("small")).textContent = String(body.parts.length);
+    }
+    button.addEventListener("click", () => this.choose(body));
+    for (const kind of ["pointerenter", "focus"]) {
+      button.addEventListener(kind, () => this.parts.highlight(body.parts));
+    }
+    for (const kind of ["pointerleave", "blur"]) {
+      button.addEventListener(kind, () => this.parts.highlight([]));
+    }
+    return row;
+  }
+}
