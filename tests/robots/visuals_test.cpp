@@ -209,14 +209,20 @@ TEST(Visuals, OfMeshesAreTheirTrianglesScaled) {
 TEST(Visuals, OfLargeMeshesAreSimplifiedWithAWord) {
   if (!reads_meshes()) GTEST_SKIP() << "built without assimp";
   const Folder folder;
-  (void)folder.with("ball.obj", ball(130));  // 67 600
+  (void)folder.with("ball.obj", ball(500));  // a million
   (void)folder.with("small.obj", ball(10));
   const RobotVisuals read =
       visuals_in(folder, link("base", visual("<mesh filename='ball.obj'/>")) +
                              link("arm", visual("<mesh filename='ball.obj' scale='2 2 2'/>") +
                                              visual("<mesh filename='small.obj'/>")));
   ASSERT_EQ(read.all.size(), 3U);
-  EXPECT_EQ(read.warnings.size(), 3U);
+  ASSERT_EQ(read.warnings.size(), 3U);
+  for (const std::size_t of_mesh : {0U, 1U}) {
+    for (const char* const word : {"ball.obj' is shown by ", " of 1000000 triangles"}) {
+      EXPECT_NE(read.warnings[of_mesh].find(word), std::string::npos) << read.warnings[of_mesh];
+    }
+  }
+  EXPECT_NE(read.warnings[2].find(std::to_string(most_visual_triangles)), std::string::npos);
   std::size_t triangles = 0;
   for (const RobotVisual& each : read.all) triangles += each.mesh.triangles.size();
   EXPECT_LE(triangles, most_visual_triangles);
