@@ -112,6 +112,14 @@ TEST(Messages, APartHasWhatIsNotCoveredOfItsMesh) {
   for (const std::size_t other : {0U, 2U, 3U}) EXPECT_FALSE(parts[other].contains("gaps"));
 }
 
+TEST(Messages, APartHasTheNameOfWhatItIsOneOfSeveralPartsOf) {
+  Stage stage;
+  stage.info.looks = {{.part = PartId{1}, .of = "bin"}};
+  const Json parts = Json::parse(scene_message(stage.info, stage.world)).at("parts");
+  EXPECT_EQ(parts[1].at("of"), "bin");
+  for (const std::size_t other : {0U, 2U, 3U}) EXPECT_FALSE(parts[other].contains("of"));
+}
+
 TEST(Messages, AnArmHasWhatAHandCanSwitchAndHowItIs) {
   Stage stage;
   ArmInfo& arm = stage.info.arms.front();
