@@ -55,6 +55,7 @@ StaticModel model_of(const Map& map, ModelFormat format, const Laws& laws) {
   map.read("covers", model.covers);
   model.X_WM = pose_of(map);
   model.law = law_called(laws, map);
+  model.paint = paint_of(map);
   return model;
 }
 

@@ -74,6 +74,27 @@ TEST(Live, TheBaseOfEachRobotIsShownWhereItStands) {
   EXPECT_EQ(program.interrupt().status, 0);
 }
 
+TEST(Live, PartsHaveTheColoursAndTheObstacleOfTheScene) {
+  LiveTeleop program({"glove_box_mesh"});
+  LivePage page(program);
+  const Json scene = page.await("scene");
+  ASSERT_FALSE(scene.is_null());
+  int panes = 0;
+  for (const Json& part : scene.at("parts")) {
+    const std::string name = part.at("name");
+    const bool is_glass = name.starts_with("glass/");
+    panes += is_glass ? 1 : 0;
+    EXPECT_EQ(part.contains("color"), part.at("group") == "obstacle") << name;
+    EXPECT_EQ(part.contains("opacity"), is_glass) << name;
+    EXPECT_EQ(part.value("of", ""), is_glass                     ? "glass"
+                                    : name.starts_with("frame/") ? "frame"
+                                                                 : "")
+        << name;
+  }
+  EXPECT_EQ(panes, 4);
+  EXPECT_EQ(program.interrupt().status, 0);
+}
+
 TEST(Live, ADrivenToolIsHeldUpByTheTable) {
   LiveTeleop program({"anderson_4x8"});
   LivePage page(program);

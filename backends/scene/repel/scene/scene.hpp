@@ -70,6 +70,7 @@ struct StaticModel {
   bool covers = true;                      ///< meshes become the parts in the lists beside them
   Pose X_WM = Pose::Identity();  ///< [m] pose of its root link, or of its SDF or MJCF world
   ForceLaw law;                  ///< of every part
+  Paint paint{};                 ///< of every part
 };
 
 /// One convex part P of the world that can come, be held by a tool, and go while the scene runs.

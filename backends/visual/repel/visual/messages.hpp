@@ -38,10 +38,14 @@ struct GapsInfo {
   std::vector<Gap> deepest;  ///< some of them, the deepest first
 };
 
-/// What a page is told of a part besides its shape: without any force.
+/// What a page is told of a part besides its shape: without any force. It stays when the part gets
+/// another shape.
 struct LookInfo {
   PartId part;       ///< of the world
   std::string of{};  ///< name of what it is one of several parts of; empty: it is all
+  std::optional<std::array<double, 3>>
+      color{};                      ///< red, green, blue, sRGB, 0 to 1; none: as others
+  std::optional<double> opacity{};  ///< above 0, to 1; none: as others
 };
 
 /// The visual of a link of an arm or its stand: without any force.

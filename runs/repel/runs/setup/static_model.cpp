@@ -31,13 +31,14 @@ std::vector<scene::Obstacle> obstacles_of(const scene::StaticModel& model, Cover
   for (const RobotPart& part : parts) ++counts[part.in_link];
   for (const RobotPart& part : parts) {
     const std::string link = model.name + '/' + part.in_link;
-    obstacles.push_back({link + '/' + part.name,
-                         shape_of(part, {.levels = 1}),
-                         to_text(part.kind),
-                         model.X_WM * part.X_LP,
-                         model.law,
-                         {},
-                         {covers.gaps_of(part), counts[part.in_link] > 1 ? link : ""}});
+    obstacles.push_back(
+        {link + '/' + part.name,
+         shape_of(part, {.levels = 1}),
+         to_text(part.kind),
+         model.X_WM * part.X_LP,
+         model.law,
+         {},
+         {covers.gaps_of(part), counts[part.in_link] > 1 ? link : "", model.paint}});
   }
   if (obstacles.empty()) {
     throw SetupError("'" + model.name + "' has no collision part; allowed: 1 or more", model.file);

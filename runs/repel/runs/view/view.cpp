@@ -25,8 +25,10 @@ using namespace std::string_literals;
 void add_shown(const std::vector<scene::Shown>& shown, visual::SceneInfo& info) {
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const PartId part{static_cast<std::int32_t>(i)};
-    const auto& [gaps, of] = shown[i];
-    if (!of.empty()) info.looks.push_back({part, of});
+    const auto& [gaps, of, paint] = shown[i];
+    if (!of.empty() || paint.color || paint.opacity) {
+      info.looks.push_back({part, of, paint.color, paint.opacity});
+    }
     if (gaps.count == 0) continue;
     visual::GapsInfo& told = info.gaps.emplace_back();
     told.part = part;
