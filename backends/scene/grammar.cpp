@@ -45,6 +45,11 @@ const Keys& sizes() {
   return keys;
 }
 
+const Keys& paint() {
+  static const Keys keys{color("color"), number("opacity", unit::share, 0.01, 1.0)};
+  return keys;
+}
+
 /// Of a part with these shapes, before `own` keys.
 Keys part(const Words& shapes, const Keys& own) {
   return joined(
@@ -132,7 +137,7 @@ const Keys& robot() {
 }
 
 const Keys& tool_part() {
-  static const Keys keys = part(tool_shapes, {});
+  static const Keys keys = part(tool_shapes, paint());
   return keys;
 }
 
@@ -162,15 +167,17 @@ const Keys& obstacle() {
     Words shapes = tool_shapes;
     shapes.insert(shapes.end(), {"urdf", "sdf", "mjcf"});
     return joined({part(shapes, {text("law"), map("motion", motion())}),
-                   {texts("packages"), flag("covers")}});
+                   {texts("packages"), flag("covers")},
+                   paint()});
   }();
   return keys;
 }
 
 const Keys& loose() {
-  static const Keys keys =
-      part(tool_shapes, {text("law"), flag("at_start"),
-                         number("mass", unit::mass, 0.0, Payload::heaviest), flag("known")});
+  static const Keys keys = joined(
+      {part(tool_shapes, {text("law"), flag("at_start"),
+                          number("mass", unit::mass, 0.0, Payload::heaviest), flag("known")}),
+       paint()});
   return keys;
 }
 

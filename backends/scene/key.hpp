@@ -28,6 +28,7 @@ struct Key {
     text,
     word,   ///< one of `words`
     texts,  ///< a text, or a list of texts
+    color,  ///< a name or "#rrggbb"
     map,    ///< with `keys`
     maps,   ///< a list of maps with `keys`
     named,  ///< a map from names to maps with `keys`
@@ -68,6 +69,9 @@ inline constexpr double most_seed = 1e9;
 }
 [[nodiscard]] inline Key texts(std::string_view name) {
   return {name, Key::Kind::texts};
+}
+[[nodiscard]] inline Key color(std::string_view name) {
+  return {name, Key::Kind::color};
 }
 [[nodiscard]] inline Key any(std::string_view name) {
   return {name};

@@ -55,6 +55,7 @@ StaticModel model_of(const Map& map, ModelFormat format, const Laws& laws) {
   map.read("covers", model.covers);
   model.X_WM = pose_of(map);
   model.law = law_called(laws, map);
+  model.paint = paint_of(map);
   return model;
 }
 
@@ -102,7 +103,8 @@ std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws, const S
     }
     for (Part& part : parts_of(entry, map, shapes)) {
       obstacles.push_back({std::move(part.name), std::move(part.shape), std::move(part.kind),
-                           part.X_BP, law_called(laws, map), motion_of(map), std::move(part.gaps)});
+                           part.X_BP, law_called(laws, map), motion_of(map),
+                           std::move(part.shown)});
     }
     require_new(names, map);
   }
@@ -127,7 +129,7 @@ std::vector<LoosePart> loose_of(const Map& scene, const Laws& laws, const ShapeF
     part.shape = std::move(parts.front().shape);
     part.kind = std::move(parts.front().kind);
     part.X_WP = parts.front().X_BP;
-    part.gaps = std::move(parts.front().gaps);
+    part.shown = std::move(parts.front().shown);
     part.law = law_called(laws, map);
     map.read("at_start", part.at_start);
     map.read("mass", part.mass);

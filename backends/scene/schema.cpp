@@ -6,6 +6,7 @@
 #include <repel/base/setup_error.hpp>
 #include <repel/scene/scene.hpp>
 
+#include "colors.hpp"
 #include "grammar.hpp"
 
 namespace repel::scene {
@@ -102,6 +103,9 @@ std::string of(const Key& key) {
       return "{\"enum\":" + strings(key.words) + "}";
     case Key::Kind::texts:
       return R"({"anyOf":[{"type":"string"},)" + texts + "]}";
+    case Key::Kind::color:
+      return R"({"anyOf":[{"type":"string","pattern":"^#[0-9a-fA-F]{6}$"},{"enum":)" +
+             strings({color_names().begin(), color_names().end()}) + "}]}";
     case Key::Kind::map:
       return object(*key.keys);
     case Key::Kind::maps:

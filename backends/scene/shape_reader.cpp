@@ -72,19 +72,28 @@ std::vector<Part> parts_of_mesh(const Map& map, const ShapeFile& shapes) {
   const PartList list = mesh.located([&] { return part_list_of(mesh_path, path); });
   shapes.part_lists.push_back(path);
   std::vector<Part> parts;
+  const std::string whole = map.at("name").text();
+  const Shown shown{.of = list.parts.size() > 1 ? whole : "", .paint = paint_of(map)};
   for (const std::vector<Vec3>& points : list.parts) {
     count_hull(mesh, points.size(), shapes);
-    std::string name = map.at("name").text();
+    std::string name = whole;
     name.append(1, '/').append(std::to_string(parts.size() + 1));
     const Shape hull = mesh.located([&] { return Shape::hull(points, {.levels = 1}); },
                                     name + " in '" + path + "': ");
-    parts.push_back({name, hull, "hull", pose_of(map), {}});
+    parts.push_back({name, hull, "hull", pose_of(map), shown});
   }
-  parts.front().gaps = list.gaps;
+  parts.front().shown.gaps = list.gaps;
   return parts;
 }
 
 }  // namespace
+
+Paint paint_of(const Map& map) {
+  Paint paint;
+  if (const Value* color = map.find("color")) paint.color = color->color();
+  if (map.find("opacity") != nullptr) paint.opacity = map.number("opacity");
+  return paint;
+}
 
 std::vector<Part> parts_of(const Value& value, const Map& map, const ShapeFile& shapes) {
   const std::string name = map.at("name").text();
@@ -96,7 +105,7 @@ std::vector<Part> parts_of(const Value& value, const Map& map, const ShapeFile& 
   if (kind == "mesh") return parts_of_mesh(map, shapes);
   const Shape shape =
       value.located([&] { return shape_of(map, kind, shapes); }, kind + " '" + name + "': ");
-  return {{name, shape, kind, pose_of(map), {}}};
+  return {{name, shape, kind, pose_of(map), {.paint = paint_of(map)}}};
 }
 
 std::vector<Part> tool_of(const Value& value, const ShapeFile& shapes) {

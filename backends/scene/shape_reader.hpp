@@ -20,6 +20,9 @@ struct ShapeFile {
   std::vector<std::string>& part_lists;  ///< paths of the lists that parts of meshes are from
 };
 
+/// From the keys `color` and `opacity`, each of which may be missing.
+[[nodiscard]] Paint paint_of(const Map& map);
+
 /// Reads the keys common to tool parts and obstacles: one part, or those of a mesh.
 [[nodiscard]] std::vector<Part> parts_of(const Value& value, const Map& map,
                                          const ShapeFile& shapes);

@@ -11,6 +11,7 @@
 #include <repel/network/elements/robot_end.hpp>
 
 #include "changed.hpp"
+#include "colors.hpp"
 
 namespace repel::scene {
 namespace {
@@ -150,6 +151,12 @@ std::vector<double> Value::numbers(const Rule& rule, std::size_t least, std::siz
 Vec3 Value::vector(const Rule& rule) const {
   const auto values = numbers(rule, 3, 3);
   return {values[0], values[1], values[2]};
+}
+
+std::array<double, 3> Value::color() const {
+  const auto color = is_scalar() ? color_of(node_->text) : std::nullopt;
+  if (!color) fail_with_value("\"#rrggbb\", in quotes, " + listed(color_names()));
+  return *color;
 }
 
 std::vector<Value> Value::list(std::size_t most) const {

@@ -3,6 +3,7 @@
 /// Strict access to YAML: every value knows its name and line; nothing is guessed or ignored.
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <cstdint>
 #include <functional>
@@ -76,6 +77,8 @@ class Value {
   [[nodiscard]] Vec3 vector(const Rule& rule) const;
   [[nodiscard]] std::vector<double> numbers(const Rule& rule, std::size_t least,
                                             std::size_t most) const;
+  /// Red, green, blue, sRGB, 0 to 1.
+  [[nodiscard]] std::array<double, 3> color() const;
   [[nodiscard]] bool is_list() const { return node_->kind == Node::Kind::list; }
   /// The entries of a list with at most `most`.
   [[nodiscard]] std::vector<Value> list(std::size_t most = input_limits.entries) const;

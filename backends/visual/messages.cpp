@@ -337,6 +337,12 @@ std::string scene_message(const SceneInfo& info, const World& world) {
           {rounded(gap.p_P.x()), rounded(gap.p_P.y()), rounded(gap.p_P.z()), rounded(gap.depth)});
     }
   }
+  for (const LookInfo& look : info.looks) {
+    Json& json = parts.at(static_cast<std::size_t>(look.part.index));
+    if (!look.of.empty()) json["of"] = look.of;
+    if (look.color) json["color"] = *look.color;
+    if (look.opacity) json["opacity"] = *look.opacity;
+  }
   Json arms = Json::array();
   for (const VisualInfo& each : info.visuals) check(info, each);
   for (std::size_t i = 0; i < info.arms.size(); ++i) {

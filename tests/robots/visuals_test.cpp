@@ -5,13 +5,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include <repel/base/setup_error.hpp>
+#include <repel/reduction/separation.hpp>
+#include <repel/robots/parts.hpp>
 #include <repel/robots/urdf.hpp>
 #include <repel/robots/visuals.hpp>
+#include <repel/world/kinematics.hpp>
 
+#include "arms.hpp"
 #include "end_to_end/folder.hpp"
 
 namespace repel {
@@ -203,14 +209,20 @@ TEST(Visuals, OfMeshesAreTheirTrianglesScaled) {
 TEST(Visuals, OfLargeMeshesAreSimplifiedWithAWord) {
   if (!reads_meshes()) GTEST_SKIP() << "built without assimp";
   const Folder folder;
-  (void)folder.with("ball.obj", ball(130));  // 67 600
+  (void)folder.with("ball.obj", ball(500));  // a million
   (void)folder.with("small.obj", ball(10));
   const RobotVisuals read =
       visuals_in(folder, link("base", visual("<mesh filename='ball.obj'/>")) +
                              link("arm", visual("<mesh filename='ball.obj' scale='2 2 2'/>") +
                                              visual("<mesh filename='small.obj'/>")));
   ASSERT_EQ(read.all.size(), 3U);
-  EXPECT_EQ(read.warnings.size(), 3U);
+  ASSERT_EQ(read.warnings.size(), 3U);
+  for (const std::size_t of_mesh : {0U, 1U}) {
+    for (const char* const word : {"ball.obj' is shown by ", " of 1000000 triangles"}) {
+      EXPECT_NE(read.warnings[of_mesh].find(word), std::string::npos) << read.warnings[of_mesh];
+    }
+  }
+  EXPECT_NE(read.warnings[2].find(std::to_string(most_visual_triangles)), std::string::npos);
   std::size_t triangles = 0;
   for (const RobotVisual& each : read.all) triangles += each.mesh.triangles.size();
   EXPECT_LE(triangles, most_visual_triangles);
@@ -255,24 +267,74 @@ TEST(Visuals, OfAMeshWhoseFacesNameVerticesThatItHasNotAreLeftOut) {
   }
 }
 
-TEST(Visuals, OfThePumaShowItsBase) {
-  const std::string path = "robots/puma560.urdf";
-  const RobotVisuals read = load_visuals(path, load_arm(path));
-  EXPECT_TRUE(read.warnings.empty());
-  double top = 0.0;
-  for (const RobotVisual& each : read.all) {
-    EXPECT_NE(each.collision, "");
-    if (each.in_link != "base_link") continue;
-    EXPECT_EQ(each.link, -1);
-    top = std::max(top, each.X_LV.translation().z() + 0.5 * size_of(each.mesh).z());
+/// A pose of the standard set; the other one has 180 degrees less in joint 2 and more in joint 3.
+std::array<double, 6> pose_of(const std::string& file) {
+  const double turn = file == test::puma_files[1] ? std::numbers::pi : 0.0;
+  return {0.3, 0.8 - turn, -2.5 + turn, 0.4, -0.7, 0.2};
+}
+
+/// The points of what an arm looks like, in the world [m].
+std::vector<Vec3> points_of(const RobotVisuals& visuals, const Kinematics& kinematics) {
+  std::vector<Vec3> points;
+  for (const RobotVisual& each : visuals.all) {
+    const Pose X_WL = each.link < 0 ? Pose::Identity() : kinematics.X_WL(each.link);
+    for (const Vec3& p : each.mesh.vertices) points.push_back(X_WL * each.X_LV * p);
   }
-  EXPECT_NEAR(top, 0.56, 1e-6) << "the column, up to the neck";
+  return points;
+}
+
+TEST(Visuals, OfThePumaAreCloseToWhatCollides) {
+  if (!reads_meshes()) GTEST_SKIP() << "built without assimp";
+  for (const std::string& file : test::puma_files) {
+    const Robot robot = load_arm(file);
+    RobotVisuals read = load_visuals(file, robot);
+    EXPECT_TRUE(read.warnings.empty());
+    std::size_t triangles = 0;
+    for (const RobotVisual& each : read.all) {
+      EXPECT_EQ(each.collision, "") << each.in_link;
+      EXPECT_TRUE(each.color) << each.in_link;
+      triangles += each.mesh.triangles.size();
+    }
+    EXPECT_LT(triangles, 15'000U);
+    // The foot flares out, and nothing of it is a part of the world.
+    std::erase_if(read.all, [](const RobotVisual& each) { return each.link < 0; });
+    Kinematics kinematics(robot.arm);
+    kinematics.update(pose_of(file));
+    const Shape point = Shape::sphere(0.0);
+    for (const Vec3& p : points_of(read, kinematics)) {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const RobotPart& part : robot.parts) {
+        const Pose X_WL = part.link < 0 ? Pose::Identity() : kinematics.X_WL(part.link);
+        Pose X_WP = Pose::Identity();
+        X_WP.translation() = p;
+        const Pose X = X_WL * part.X_LP;
+        nearest =
+            std::min(nearest, separation(point, X_WP, shape_of(part, {.levels = 1}), X).distance);
+      }
+      ASSERT_LT(nearest, 0.006) << file << ": " << p.transpose();
+    }
+  }
+}
+
+TEST(Visuals, OfBothPumaFilesAreInTheSamePlaces) {
+  if (!reads_meshes()) GTEST_SKIP() << "built without assimp";
+  std::vector<std::vector<Vec3>> points;
+  for (const std::string& file : test::puma_files) {
+    const Robot robot = load_arm(file);
+    Kinematics kinematics(robot.arm);
+    kinematics.update(pose_of(file));
+    points.push_back(points_of(load_visuals(file, robot), kinematics));
+  }
+  ASSERT_EQ(points[0].size(), points[1].size());
+  for (std::size_t i = 0; i < points[0].size(); ++i) {
+    ASSERT_LT((points[0][i] - points[1][i]).norm(), 0.002) << "their forearms differ by 1.3 mm";
+  }
 }
 
 TEST(Visuals, OfTheLongReachArmAreItsGantryInItsColour) {
   const std::string path = "robots/long_reach.urdf";
   const RobotVisuals read = load_visuals(path, load_arm(path));
-  EXPECT_TRUE(read.warnings.empty());
+  EXPECT_EQ(read.warnings.empty(), reads_meshes());
   int beams = 0;
   for (const RobotVisual& each : read.all) {
     if (each.in_link != "gantry") continue;

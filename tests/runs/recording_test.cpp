@@ -44,7 +44,7 @@ void record(const std::string& path, const std::vector<TickRecord>& ticks) {
   const World& world = prepared->cell.world();
   DatedShapes shapes;
   const auto log = mcap_log(path, heading_of(prepared->scene, prepared->cell), prepared->scene,
-                            options(), world, shapes);
+                            options(), world, prepared->shown, shapes);
   Snapshot snapshot;
   snapshot.arms.resize(1);
   snapshot.X_WB.assign(world.motion().bodies.size(), Pose::Identity());

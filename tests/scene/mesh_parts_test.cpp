@@ -78,12 +78,20 @@ TEST_F(MeshParts, ReadBackAsTheyWereWritten) {
 TEST_F(MeshParts, TellTheirFirstObstacleWhatIsNotCovered) {
   write("bin.stl.parts.yaml");
   const Scene scene = parsed("");
-  EXPECT_EQ(scene.obstacles[0].gaps.count, 7U);
-  EXPECT_EQ(scene.obstacles[0].gaps.deepest.at(0).p_M.z(), -0.2);
-  EXPECT_EQ(scene.obstacles[1].gaps.count, 0U);
+  EXPECT_EQ(scene.obstacles[0].shown.gaps.count, 7U);
+  EXPECT_EQ(scene.obstacles[0].shown.gaps.deepest.at(0).p_M.z(), -0.2);
+  EXPECT_EQ(scene.obstacles[1].shown.gaps.count, 0U);
   list_.gaps = {};
   write("bin.stl.parts.yaml");
-  EXPECT_EQ(parsed("").obstacles[0].gaps.count, 0U);
+  EXPECT_EQ(parsed("").obstacles[0].shown.gaps.count, 0U);
+}
+
+TEST_F(MeshParts, KnowWhatTheyAreSeveralOf) {
+  write("bin.stl.parts.yaml");
+  for (const Obstacle& each : parsed("").obstacles) EXPECT_EQ(each.shown.of, "bin");
+  list_.parts.pop_back();
+  write("bin.stl.parts.yaml");
+  EXPECT_EQ(parsed("").obstacles.at(0).shown.of, "") << "the only one";
 }
 
 TEST_F(MeshParts, WithGapsThatCannotBeAreRefusedWithTheirLine) {

@@ -200,6 +200,25 @@ TEST(Messages, APartHasWhatIsNotCoveredOfItsMesh) {
   for (const std::size_t other : {0U, 2U, 3U}) EXPECT_FALSE(parts[other].contains("gaps"));
 }
 
+TEST(Messages, APartHasTheNameOfWhatItIsOneOfSeveralPartsOf) {
+  Stage stage;
+  stage.info.looks = {{.part = PartId{1}, .of = "bin"}};
+  const Json parts = Json::parse(scene_message(stage.info, stage.world)).at("parts");
+  EXPECT_EQ(parts[1].at("of"), "bin");
+  for (const std::size_t other : {0U, 2U, 3U}) EXPECT_FALSE(parts[other].contains("of"));
+}
+
+TEST(Messages, APartHasAColourAndAnOpacityWhereTheyAreGiven) {
+  Stage stage;
+  stage.info.looks = {{.part = PartId{1}, .color = {{0.2, 0.4, 1.0}}},
+                      {.part = PartId{2}, .opacity = 0.25}};
+  const Json parts = Json::parse(scene_message(stage.info, stage.world)).at("parts");
+  EXPECT_EQ(parts[1].at("color"), (Json{0.2, 0.4, 1.0}));
+  EXPECT_FALSE(parts[1].contains("opacity"));
+  EXPECT_EQ(parts[2].at("opacity"), 0.25);
+  for (const std::size_t other : {0U, 2U, 3U}) EXPECT_FALSE(parts[other].contains("color"));
+}
+
 TEST(Messages, AnArmHasWhatAHandCanSwitchAndHowItIs) {
   Stage stage;
   ArmInfo& arm = stage.info.arms.front();

@@ -109,6 +109,20 @@ TEST(RecordedScene, BodiesAreThePartsOfTheWorldInTheFramesOfThePoses) {
   EXPECT_GT(groups["obstacle"], 0);
 }
 
+TEST(RecordedScene, PartsHaveTheColoursOfTheScene) {
+  const Folder folder;
+  record("glove_box --fast --seconds 0.1", folder / "run.mcap");
+  const auto updates = by_tick(folder / "run.mcap", "/bodies");
+  const auto entities = entities_of(updates.begin()->second);
+  const auto color_of = [&](const char* part) {
+    return entities.at(part).at("triangles").at(0).at("color");
+  };
+  EXPECT_EQ(color_of("top_pane").at("a"), 0.25) << "glass";
+  EXPECT_EQ(color_of("balance"), (nlohmann::json{{"r", 1.0}, {"g", 1.0}, {"b", 1.0}, {"a", 1.0}}));
+  EXPECT_EQ(color_of("palm").at("a"), 1.0);
+  EXPECT_NE(color_of("palm"), color_of("balance"));
+}
+
 TEST(RecordedScene, ContactsAreThePairsAndForcesOfTheSameTick) {
   const Folder folder;
   record("anderson_4x8 --fast --seconds 6", folder / "run.mcap");

@@ -37,13 +37,18 @@ std::string scene_of(const Folder& folder) {
 TEST(StaticModel, BecomesObstaclesOfItsLinksAndCovers) {
   const Folder folder;
   const scene::Scene scene = scene::load(scene_of(folder));
-  const auto cell = runs::describe(scene, 400.0).cell;
+  const runs::DescribedScene described = runs::describe(scene, 400.0);
+  const CellDescription& cell = described.cell;
   ASSERT_EQ(cell.obstacles.size(), 3U);
   EXPECT_EQ(cell.obstacles[0].name, "cell/table/plate");
   EXPECT_EQ(cell.obstacles[1].name, "cell/side/side_0/1");
   EXPECT_EQ(cell.obstacles[2].name, "cell/side/side_0/2");
   EXPECT_EQ(cell.obstacles[0].law.range, 0.02);
   EXPECT_LT((cell.obstacles[2].X_WP.translation() - Vec3(0.6, 0.15, 0.445)).norm(), 1e-12);
+  const auto* const shown = &described.shown.at(cell.arms[0].parts.size());
+  EXPECT_EQ(shown[0].of, "") << "the only one of its link";
+  EXPECT_EQ(shown[1].of, "cell/side");
+  EXPECT_EQ(shown[2].of, "cell/side");
 }
 
 TEST(StaticModel, PushesAsTheSamePartsInTheSceneWouldAlsoInContact) {

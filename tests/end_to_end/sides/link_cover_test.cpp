@@ -52,13 +52,13 @@ TEST(LinkCover, TellsWhichPartOfTheWorldHasTheGapsOfItsMesh) {
   const auto described = runs::describe(scene::load(scene_of(folder, "", "2 2 2")), 400.0);
   std::size_t part = 0;
   for (const ArmPart& each : described.cell.arms[0].parts) {
-    const scene::Gaps& gaps = described.gaps.at(part++);
+    const scene::Gaps& gaps = described.shown.at(part++).gaps;
     EXPECT_EQ(gaps.count, each.name == "hook/1" ? 3U : 0U) << each.name;
     if (gaps.count == 0) continue;
     EXPECT_LT((gaps.deepest.at(0).p_M - Vec3(0, 0, 0.12)).norm(), 1e-12);
     EXPECT_NEAR(gaps.deepest[0].depth, 4e-3, 1e-12);
   }
-  EXPECT_EQ(described.gaps.size(), part + described.cell.obstacles.size());
+  EXPECT_EQ(described.shown.size(), part + described.cell.obstacles.size());
 }
 
 TEST(LinkCover, HasTheScaleOfTheMeshInTheRobotFile) {

@@ -24,7 +24,7 @@
 #include <repel/scene/change.hpp>
 #include <repel/scene/module_kinds.hpp>
 #include <repel/scene/network.hpp>
-#include <repel/scene/part_list.hpp>
+#include <repel/scene/shown.hpp>
 #include <repel/schedule/coprocessor_options.hpp>
 #include <repel/simulated/changed_arm.hpp>
 #include <repel/simulated/sensed_arm.hpp>
@@ -43,7 +43,7 @@ struct Part {
   Shape shape;                   ///< in the frame P
   std::string kind;              ///< box, sphere, capsule, cylinder, cone, ellipsoid or hull
   Pose X_BP = Pose::Identity();  ///< [m] pose in the tool frame
-  Gaps gaps{};                   ///< of the mesh, in the frame P; only of its first part
+  Shown shown{};                 ///< no force depends on it
 };
 
 /// One convex part P of the world.
@@ -54,7 +54,7 @@ struct Obstacle {
   Pose X_WP = Pose::Identity();  ///< [m] pose; initial pose if it moves
   ForceLaw law;                  ///< between it and every part of every arm
   std::optional<ReciprocatingMotion> motion;  ///< none: it is fixed
-  Gaps gaps{};                                ///< of the mesh, as those of a Part
+  Shown shown{};                              ///< no force depends on it
 };
 
 /// How a file describes a model.
@@ -70,6 +70,7 @@ struct StaticModel {
   bool covers = true;                      ///< meshes become the parts in the lists beside them
   Pose X_WM = Pose::Identity();  ///< [m] pose of its root link, or of its SDF or MJCF world
   ForceLaw law;                  ///< of every part
+  Paint paint{};                 ///< of every part
 };
 
 /// One convex part P of the world that can come, be held by a tool, and go while the scene runs.
@@ -82,7 +83,7 @@ struct LoosePart {
   bool at_start = true;              ///< it is there at the start
   double mass = 0.0;                 ///< [kg]
   bool is_mass_known = true;         ///< to the controller, not only to the simulated arm
-  Gaps gaps{};                       ///< of the mesh, as those of a Part
+  Shown shown{};                     ///< no force depends on it
 };
 
 /// Parts reserved for what is not known before: boxes from the page of the live view.

@@ -38,6 +38,16 @@ struct GapsInfo {
   std::vector<Gap> deepest;  ///< some of them, the deepest first
 };
 
+/// What a page is told of a part besides its shape: without any force. It stays when the part gets
+/// another shape.
+struct LookInfo {
+  PartId part;       ///< of the world
+  std::string of{};  ///< name of what it is one of several parts of; empty: it is all
+  std::optional<std::array<double, 3>>
+      color{};                      ///< red, green, blue, sRGB, 0 to 1; none: as others
+  std::optional<double> opacity{};  ///< above 0, to 1; none: as others
+};
+
 /// The visual of a link of an arm or its stand: without any force.
 struct VisualInfo {
   std::string name;              ///< as in "base_link"
@@ -60,6 +70,7 @@ struct SceneInfo {
   std::vector<ArmInfo> arms;        ///< in the order of the cell
   std::vector<PartId> spare;        ///< reserved for boxes from a page
   std::vector<GapsInfo> gaps;       ///< of the meshes that are not covered as a whole
+  std::vector<LookInfo> looks;      ///< of parts of which more is told than their shape
   std::vector<VisualInfo> visuals;  ///< what the arms look like
 };
 

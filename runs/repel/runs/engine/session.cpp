@@ -25,9 +25,10 @@ class RunLog {
   RunLog(Tap& tap, const Heading& heading, const PreparedRun& prepared, const RunOptions& options,
          DatedShapes& shapes)
       : part_(options.log),
-        log_(options.log.ends_with(".mcap") ? mcap_log(part_.name(), heading, prepared.scene,
-                                                       options, prepared.cell.world(), shapes)
-                                            : csv_log(part_.name(), heading, !options.fast)),
+        log_(options.log.ends_with(".mcap")
+                 ? mcap_log(part_.name(), heading, prepared.scene, options, prepared.cell.world(),
+                            prepared.shown, shapes)
+                 : csv_log(part_.name(), heading, !options.fast)),
         thread_(tap.log(), *log_, [this](const std::string& trouble) { note(trouble); }) {}
 
   /// Completes the file and moves it to its target, or keeps the incomplete temporary file.

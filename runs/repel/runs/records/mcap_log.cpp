@@ -168,11 +168,12 @@ Json forces_of(const TickRecord& k, std::size_t joints) {
 class McapLog final : public TickLog {
  public:
   McapLog(const std::string& path, const Heading& heading, const scene::Scene& scene,
-          const RunOptions& options, const World& world, DatedShapes& shapes)
+          const RunOptions& options, const World& world, const std::vector<scene::Shown>& shown,
+          DatedShapes& shapes)
       : path_(path),
         heading_(heading),
         frames_(mcap::told_apart(heading.bodies)),
-        parts_(world, heading),
+        parts_(world, heading, shown),
         pushes_(world, heading),
         shapes_(shapes),
         writer_(path, {.profile = mcap::profile,
@@ -362,8 +363,9 @@ class McapLog final : public TickLog {
 
 std::unique_ptr<TickLog> mcap_log(const std::string& path, const Heading& heading,
                                   const scene::Scene& scene, const RunOptions& options,
-                                  const World& world, DatedShapes& shapes) {
-  return std::make_unique<McapLog>(path, heading, scene, options, world, shapes);
+                                  const World& world, const std::vector<scene::Shown>& shown,
+                                  DatedShapes& shapes) {
+  return std::make_unique<McapLog>(path, heading, scene, options, world, shown, shapes);
 }
 
 }  // namespace repel::runs

@@ -17,11 +17,13 @@ namespace repel::runs {
 /// A file for `load_recording`, Foxglove and the `mcap` package; docs/recording.md has its
 /// channels. It contains the scene and the robots too. Compressed if that was built in.
 /// @param world as it is at the start
+/// @param shown of the parts of the world, for their colours
 /// @param shapes those that parts get while the run lasts; must outlive the log
 /// @throws SetupError if the file cannot be written
 [[nodiscard]] std::unique_ptr<TickLog> mcap_log(const std::string& path, const Heading& heading,
                                                 const scene::Scene& scene,
                                                 const RunOptions& options, const World& world,
+                                                const std::vector<scene::Shown>& shown,
                                                 DatedShapes& shapes);
 
 }  // namespace repel::runs

@@ -103,6 +103,13 @@ bool is_passable(const World& world, PartId part) {
   return meets;
 }
 
+/// A colour with what the scene says of it.
+Colour painted(Colour colour, const scene::Paint& paint) {
+  if (paint.color) colour = {(*paint.color)[0], (*paint.color)[1], (*paint.color)[2], colour.a};
+  if (paint.opacity) colour.a = *paint.opacity;
+  return colour;
+}
+
 /// The coordinates to a micrometre, which is less than is seen.
 Entry triangles_json(const Shape& shape, const Pose& X_BP, const Colour& colour) {
   const TriangleMesh mesh = mesh_of(shape);
@@ -238,7 +245,7 @@ std::vector<std::string> told_apart(const std::vector<std::string>& names) {
   return apart;
 }
 
-Bodies::Bodies(const World& world, const Heading& heading) {
+Bodies::Bodies(const World& world, const Heading& heading, const std::vector<scene::Shown>& shown) {
   const std::vector<std::string> frames = told_apart(heading.bodies);
   std::vector<std::string> names;
   for (const Part& part : world.parts()) names.push_back(part.name);
@@ -250,6 +257,7 @@ Bodies::Bodies(const World& world, const Heading& heading) {
     const bool passable = is_passable(world, {static_cast<std::int32_t>(i)});
     Colour colour = group == std::string("tool") ? tool_colour : link_colour;
     if (group == std::string("obstacle")) colour = passable ? passable_colour : obstacle_colour;
+    if (i < shown.size()) colour = painted(colour, shown[i].paint);
     Entry entity = entity_json(ids[i], frames[body], true);
     add_metadata(entity, "group", group);
     add_metadata(entity, "passable", passable ? "yes" : "no");

@@ -14,6 +14,7 @@
 #include <repel/loop/tap.hpp>
 #include <repel/runs/records/dated_shapes.hpp>
 #include <repel/runs/records/heading.hpp>
+#include <repel/scene/shown.hpp>
 #include <repel/world/world.hpp>
 
 namespace repel::runs::mcap {
@@ -24,7 +25,8 @@ namespace repel::runs::mcap {
 class Bodies {
  public:
   /// @param world as it is at the start; its names, shapes and pairs are copied
-  Bodies(const World& world, const Heading& heading);
+  /// @param shown of its parts, in their order; those left out at its end have the usual colours
+  Bodies(const World& world, const Heading& heading, const std::vector<scene::Shown>& shown);
 
   /// To be called at every tick: notes what has come and gone.
   /// @param reshaped what DatedShapes::take gave for this tick

@@ -116,10 +116,10 @@ std::vector<std::pair<int, int>> disabled_pairs(const scene::RobotChoice& choice
   return pairs;
 }
 
-/// @param gaps to which those of each part are added, in the order of the parts
+/// @param shown to which that of each part is added, in the order of the parts
 ArmDescription describe_arm(const scene::Scene& scene, const scene::ArmSetup& setup,
                             const Robot& robot, network::RemoteLink* remote,
-                            const CoversBeside& covers, std::vector<scene::Gaps>& gaps) {
+                            const CoversBeside& covers, std::vector<scene::Shown>& shown) {
   ArmDescription arm;
   arm.model = robot.arm;
   arm.kinematics = std::make_unique<Kinematics>(robot.arm);
@@ -129,7 +129,7 @@ ArmDescription describe_arm(const scene::Scene& scene, const scene::ArmSetup& se
   std::vector<std::string> links;  // link name in the URDF file, for each part
   for (const scene::Part& part : setup.tool) {
     arm.parts.push_back({part.name, part.shape, part.X_BP});
-    gaps.push_back(part.gaps);
+    shown.push_back(part.shown);
     links.push_back(setup.robot.tip_link.empty() ? robot.arm.links.back().name
                                                  : setup.robot.tip_link);
   }
@@ -137,7 +137,7 @@ ArmDescription describe_arm(const scene::Scene& scene, const scene::ArmSetup& se
     for (const RobotPart& part : robot.parts) {
       if (part.link != link || !is_kept(setup, part)) continue;
       arm.parts.push_back({part.name, shape_of(part, {.levels = 1}), part.X_LP, link});
-      gaps.push_back(covers.gaps_of(part));
+      shown.push_back({.gaps = covers.gaps_of(part)});
       links.push_back(part.in_link);
     }
   }
@@ -167,7 +167,7 @@ DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gra
     const scene::ArmSetup& setup = scene.arm_setup(i);
     described.robots.push_back(load_robot(setup.robot, with_gravity, covers));
     ArmDescription& arm = cell.arms.emplace_back(
-        describe_arm(scene, setup, described.robots.back(), remote, covers, described.gaps));
+        describe_arm(scene, setup, described.robots.back(), remote, covers, described.shown));
     if (setup.robot.admittance) {
       arm = admitted(std::move(arm), *setup.robot.admittance, 1.0 / rate_hz);
     }
@@ -184,14 +184,14 @@ DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gra
     for (const scene::Obstacle& obstacle : *obstacles) {
       cell.obstacles.push_back(
           {obstacle.name, obstacle.shape, obstacle.X_WP, obstacle.law, obstacle.motion});
-      described.gaps.push_back(obstacle.gaps);
+      described.shown.push_back(obstacle.shown);
     }
   }
   described.part_lists = covers.lists();
   for (const scene::LoosePart& part : scene.loose) {
     cell.loose.push_back({part.name, part.shape, part.X_WP, part.law, part.at_start, 0.0, part.mass,
                           part.is_mass_known});
-    described.gaps.push_back(part.gaps);
+    described.shown.push_back(part.shown);
   }
   for (int i = 1; i <= scene.spare.count; ++i) {
     const Shape nothing = Shape::sphere(0.01 * scene.spare.room, {.levels = 1});

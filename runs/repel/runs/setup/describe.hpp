@@ -19,9 +19,8 @@ struct DescribedScene {
   std::vector<scene::Obstacle> model_obstacles;  ///< of Scene::models, the last ones of the cell
   /// Paths of the lists of parts of meshes in URDF files.
   std::vector<std::string> part_lists;
-  /// Gaps of the meshes, at the first part of each cover, for each part of the world in its order;
-  /// only of covers from files.
-  std::vector<scene::Gaps> gaps;
+  /// Of each part of the world, in its order, without those reserved at its end.
+  std::vector<scene::Shown> shown;
 };
 
 /// Reads the robots of the scene and describes its cell, with `rate_hz` ticks per second.

@@ -24,15 +24,15 @@ struct PreparedRun {
       : scene(std::move(changed)),
         options(run),
         robots(std::move(described.robots)),
-        gaps(std::move(described.gaps)),
+        shown(std::move(described.shown)),
         faults(std::move(injected)),
         cell(std::move(described.cell)) {}
 
   /// With the changes made by the options, the obstacles of its models, and all lists of parts.
   scene::Scene scene;
   RunOptions options;
-  std::vector<Robot> robots;      ///< of the arms, in their order
-  std::vector<scene::Gaps> gaps;  ///< of DescribedScene
+  std::vector<Robot> robots;        ///< of the arms, in their order
+  std::vector<scene::Shown> shown;  ///< of DescribedScene
   /// Of the first arm; null: none. The cell has its kinematics by them.
   std::unique_ptr<faults::InjectedFaults> faults;
   Cell cell;

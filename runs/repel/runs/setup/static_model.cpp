@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <repel/runs/setup/static_model.hpp>
 
-#include <utility>
+#include <map>
+#include <string>
+#include <string_view>
 
 #include <repel/robots/mjcf.hpp>
 #include <repel/robots/parts.hpp>
@@ -24,16 +26,19 @@ std::vector<RobotPart> parts_of(const scene::StaticModel& model, CoversBeside& c
 
 std::vector<scene::Obstacle> obstacles_of(const scene::StaticModel& model, CoversBeside& covers) {
   std::vector<scene::Obstacle> obstacles;
-  for (const RobotPart& part : parts_of(model, covers)) {
-    std::string name = model.name;
-    name.append(1, '/').append(part.in_link).append(1, '/').append(part.name);
-    obstacles.push_back({std::move(name),
-                         shape_of(part, {.levels = 1}),
-                         to_text(part.kind),
-                         model.X_WM * part.X_LP,
-                         model.law,
-                         {},
-                         covers.gaps_of(part)});
+  const std::vector<RobotPart> parts = parts_of(model, covers);
+  std::map<std::string_view, int> counts;
+  for (const RobotPart& part : parts) ++counts[part.in_link];
+  for (const RobotPart& part : parts) {
+    const std::string link = model.name + '/' + part.in_link;
+    obstacles.push_back(
+        {link + '/' + part.name,
+         shape_of(part, {.levels = 1}),
+         to_text(part.kind),
+         model.X_WM * part.X_LP,
+         model.law,
+         {},
+         {covers.gaps_of(part), counts[part.in_link] > 1 ? link : "", model.paint}});
   }
   if (obstacles.empty()) {
     throw SetupError("'" + model.name + "' has no collision part; allowed: 1 or more", model.file);

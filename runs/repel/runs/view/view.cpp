@@ -22,17 +22,20 @@ namespace {
 
 using namespace std::string_literals;
 
-/// What is not covered of the meshes, for display.
-std::vector<visual::GapsInfo> gaps_info_of(const std::vector<scene::Gaps>& gaps) {
-  std::vector<visual::GapsInfo> infos;
-  for (std::size_t i = 0; i < gaps.size(); ++i) {
-    if (gaps[i].count == 0) continue;
-    visual::GapsInfo& info = infos.emplace_back();
-    info.part = PartId{static_cast<std::int32_t>(i)};
-    info.count = gaps[i].count;
-    for (const scene::Gap& gap : gaps[i].deepest) info.deepest.push_back({gap.p_M, gap.depth});
+/// Adds what is told of parts besides their shapes.
+void add_shown(const std::vector<scene::Shown>& shown, visual::SceneInfo& info) {
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const PartId part{static_cast<std::int32_t>(i)};
+    const auto& [gaps, of, paint] = shown[i];
+    if (!of.empty() || paint.color || paint.opacity) {
+      info.looks.push_back({part, of, paint.color, paint.opacity});
+    }
+    if (gaps.count == 0) continue;
+    visual::GapsInfo& told = info.gaps.emplace_back();
+    told.part = part;
+    told.count = gaps.count;
+    for (const scene::Gap& gap : gaps.deepest) told.deepest.push_back({gap.p_M, gap.depth});
   }
-  return infos;
 }
 
 visual::SceneInfo scene_info_of(const PreparedRun& prepared, const Heading& heading,
@@ -41,7 +44,7 @@ visual::SceneInfo scene_info_of(const PreparedRun& prepared, const Heading& head
   const Cell& cell = prepared.cell;
   const RunOptions& options = prepared.options;
   visual::SceneInfo info = visual::scene_info_of(cell, scene.name);
-  info.gaps = gaps_info_of(prepared.gaps);
+  add_shown(prepared.shown, info);
   info.replay = is_replay;
   info.duration = info.replay ? options.seconds : 0.0;
   const auto spare =
