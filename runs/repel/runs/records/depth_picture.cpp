@@ -20,10 +20,11 @@ DepthPicture depth_picture(std::size_t camera, double time, int width, int heigh
   const auto kept = [&step](int count) { return (count + step - 1) / step; };
   while (kept(width) * kept(height) > most_picture_pixels) ++step;
   DepthPicture picture{camera, time, kept(width), kept(height), {}};
-  picture.depth.reserve(static_cast<std::size_t>(picture.width * picture.height));
+  const auto row_length = static_cast<std::size_t>(width);
   for (int row = 0; row < height; row += step) {
+    const auto pixels = depth.subspan(static_cast<std::size_t>(row) * row_length, row_length);
     for (int column = 0; column < width; column += step) {
-      picture.depth.push_back(millimetres(depth[static_cast<std::size_t>(row * width + column)]));
+      picture.depth.push_back(millimetres(pixels[static_cast<std::size_t>(column)]));
     }
   }
   return picture;
