@@ -80,6 +80,8 @@ foreach(data scenes robots)
   install(DIRECTORY ${data} DESTINATION ${CMAKE_INSTALL_DATADIR}/repel COMPONENT programs
           FILES_MATCHING PATTERN *.yaml PATTERN *.urdf PATTERN *.stl PATTERN *.obj)
 endforeach()
+install(FILES docs/foxglove_layout.json DESTINATION ${CMAKE_INSTALL_DATADIR}/repel
+        COMPONENT programs)
 install(DIRECTORY backends/visual/page/ DESTINATION ${CMAKE_INSTALL_DATADIR}/repel/page
         COMPONENT programs PATTERN bundle EXCLUDE)
 if(TARGET repel_visual)  # programs that link it are elsewhere, and so may be the package

@@ -12,6 +12,7 @@ from . import _repel
 from ._errors import SetupError, how_to_have
 from ._repel import (QUERY_ENDS, ArmKinematics, Cell, Command, ForceLaw, QueryOptions, Separation,
                      Shape, Tick, WarmStart, WarmStarts, World, separation)
+from ._rerun import CellLog, rerun
 from ._separations import SEPARATION, separations
 from .description import Admittance, Arm, Capacities, Kinematics, Link, Loose, Obstacle, Part
 from .program import program, run, view
@@ -23,12 +24,12 @@ if TYPE_CHECKING:
 
 __version__ = "0.2.0"
 
-__all__ = ["Admittance", "Arm", "ArmKinematics", "Capacities", "Cell", "Command", "Cover",
-           "DepthCamera", "ForceLaw", "Kinematics", "Link", "LiveView", "Loose", "Obstacle",
-           "Part", "QUERY_ENDS", "QueryOptions", "Recording", "SEPARATION", "Scene",
+__all__ = ["Admittance", "Arm", "ArmKinematics", "Capacities", "Cell", "CellLog", "Command",
+           "Cover", "DepthCamera", "ForceLaw", "Kinematics", "Link", "LiveView", "Loose",
+           "Obstacle", "Part", "QUERY_ENDS", "QueryOptions", "Recording", "SEPARATION", "Scene",
            "ScriptedOperator", "Separation", "SetupError", "Shape", "SimulatedArm", "Tick",
            "WarmStart", "WarmStarts", "World", "cover", "load_scene", "program", "read_recording",
-           "run", "separation", "separations", "view"]
+           "rerun", "run", "separation", "separations", "view"]
 
 #: What a build leaves out when packages are missing, and the part of it that is left out.
 _PARTS = {"Scene": "scenes", "ScriptedOperator": "scenes", "SimulatedArm": "scenes",

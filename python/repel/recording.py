@@ -15,7 +15,7 @@ import numpy as np
 from . import _repel
 from ._errors import SetupError, needed
 
-_TOPICS = ("/inputs", "/forces", "/separations", "/energy", "/timing", "/poses")
+_TOPICS = ("/inputs", "/forces", "/separations", "/energy", "/timing")
 #: The messages of a topic, in their order.
 _Rows = list[dict[str, Any]]
 
@@ -119,7 +119,7 @@ def _column(name: str, values: Any) -> np.ndarray:
 def _from_mcap(file: str) -> Recording:
     if not hasattr(_repel, "_read_mcap"):
         raise SetupError("repel was built without its part record")
-    contents = _repel._read_mcap(file)
+    contents = _repel._read_mcap(file, [*_TOPICS, "/poses"])
     try:
         columns = _from_contents(contents)
     except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
@@ -129,8 +129,10 @@ def _from_mcap(file: str) -> Recording:
 
 
 def _from_contents(contents: dict[str, Any]) -> dict[str, np.ndarray]:
-    messages = {topic: [json.loads(data) for _, data in contents["messages"].get(topic, [])]
+    messages = {topic: [json.loads(data) for _, _, data in contents["messages"].get(topic, [])]
                 for topic in _TOPICS}
+    poses = contents["messages"].get("/poses", [])[:1]  # for the names of the bodies
+    messages["/poses"] = [json.loads(data) for _, _, data in poses]
     # Of a file that is cut off, the last tick may lack some of its messages.
     topics = [messages[topic] for topic in ("/inputs", "/forces", "/separations")]
     ticks = min(len(topic) for topic in topics)

@@ -24,6 +24,7 @@ void bind_ticks(nb::module_& m);
 void bind_kinematics(nb::module_& m);
 void bind_cell(nb::module_& m);
 void bind_loose(nb::module_& m);
+void bind_pictures(nb::module_& m);
 void bind_simulations(nb::module_& m);
 void bind_views(nb::module_& m);
 void bind_cameras(nb::module_& m);

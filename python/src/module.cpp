@@ -32,6 +32,7 @@ NB_MODULE(_repel, m) {
   bind_kinematics(m);
   bind_cell(m);
   bind_loose(m);
+  bind_pictures(m);
   bind_simulations(m);
 #ifdef REPEL_PYTHON_ROBOTS
   bind_robots(m);

@@ -68,6 +68,8 @@ class OwnCell {
   /// @throws SetupError if there is no such arm
   [[nodiscard]] std::size_t checked_arm(int arm) const;
   [[nodiscard]] const std::vector<OwnKinematics*>& kinematics() const { return kinematics_; }
+  /// What a display shows of the last tick. @throws SetupError if there was none
+  [[nodiscard]] nb::dict picture();
   /// Of all arms, of the last tick; empty: there was none.
   [[nodiscard]] const std::vector<const TickRecord*>& records() const noexcept { return records_; }
   /// The loose part of that name. @throws SetupError if there is none

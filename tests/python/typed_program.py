@@ -38,6 +38,12 @@ def loose(arm: repel.Arm, X_WP: np.ndarray) -> repel.Tick:
     return tick
 
 
+def shown(cell: repel.Cell, file: str) -> None:
+    repel.rerun(repel.read_recording(file), save="run.rrd")
+    with repel.rerun(cell, spawn=True) as log:
+        log.log(compute=1e-4)
+
+
 def simulated(model: Any, data: Any) -> float:
     sim = repel.mujoco.attach(model, data, site="tool", follow=["ball"])
     names: list[str] = [part.name for part in sim.followed] + sim.left_out

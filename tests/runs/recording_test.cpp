@@ -42,9 +42,9 @@ RunOptions options() {
 void record(const std::string& path, const std::vector<TickRecord>& ticks) {
   const auto prepared = prepare(scene::load(scene_file("empty")), options());
   const World& world = prepared->cell.world();
-  DatedShapes shapes;
+  BesideTicks beside;
   const auto log = mcap_log(path, heading_of(prepared->scene, prepared->cell), prepared->scene,
-                            options(), world, prepared->shown, shapes);
+                            options(), prepared->cell, prepared->shown, beside);
   Snapshot snapshot;
   snapshot.arms.resize(1);
   snapshot.X_WB.assign(world.motion().bodies.size(), Pose::Identity());

@@ -159,9 +159,9 @@ def _rows_of_csv(path: str) -> list[list[float]]:
 def _rows_of_recording(path: str) -> list[list[float]]:
     """What the first operator did: his rates, and his lever."""
     try:
-        messages = _repel._read_mcap(path)["messages"]["/inputs"]
+        messages = _repel._read_mcap(path, ["/inputs"])["messages"]["/inputs"]
         rows = []
-        for _, text in messages:
+        for _, _, text in messages:
             tick = json.loads(text)
             arm = tick["arms"][0]
             rows.append([tick["time_s"], *arm["linear"], *arm["angular"], arm["lever_rate"],

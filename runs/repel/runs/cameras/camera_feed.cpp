@@ -43,7 +43,9 @@ CameraFeed::CameraFeed(const scene::CameraChoice& choice, const Sights& sights,
       image_(camera_.pixels()),
       X_C_(sights.size(), Pose::Identity()),
       ring_(images_waiting(choice_), Scenery{0.0, 0, X_C_}),
-      period_(place.period) {
+      period_(place.period),
+      index_(place.index),
+      on_image_(place.listeners.on_image) {
   result_.name = choice_.name.empty() ? "camera" : choice_.name;
   if (!choice_.recording) {
     simulated_.emplace(
@@ -143,6 +145,7 @@ bool CameraFeed::look(const Scenery& scenery) {
       return false;
     }
   }
+  if (on_image_) on_image_({index_, scenery.time, camera_, image_});
   const auto begin = steady_clock::now();
   (void)own_.remove(X_C_, image_);
   maker_->look(image_, scenery.time);

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -83,8 +84,10 @@ class CameraFeed {
   std::size_t next_image_ = 0;  ///< of a recording, counted through all repetitions
   double round_ = 0.0;          ///< [s] after which the recording begins again, if it does
   std::atomic<double> now_{0.0};
-  std::atomic<double> seen_at_{0.0};     ///< [s] capture time of the last image used
-  double period_ = 0.0;                  ///< [s] of the tick
+  std::atomic<double> seen_at_{0.0};  ///< [s] capture time of the last image used
+  double period_ = 0.0;               ///< [s] of the tick
+  std::size_t index_;                 ///< in its scene
+  std::function<void(const CameraImage&)> on_image_;
   std::chrono::nanoseconds looking_{0};  ///< at the oldest image in the ring
   ImageResult result_;                   ///< of the serving thread, but for:
   double silent_ = 0.0;                  ///< [s] of the thread of the tick

@@ -24,7 +24,7 @@ bool is_blind(const scene::Scene& scene, std::span<const TickRecord* const> reco
 }  // namespace
 
 CameraFeeds::CameraFeeds(const scene::Scene& scene, const std::vector<Robot>& robots, Cell& cell,
-                         bool in_step, const std::function<void(PartId, const Shape&)>& on_add)
+                         bool in_step, const CameraListeners& listeners)
     : sights_(scene, robots, cell),
       X_W_(sights_.size(), Pose::Identity()),
       period_(1e-9 * static_cast<double>(cell.period().count())),
@@ -35,10 +35,11 @@ CameraFeeds::CameraFeeds(const scene::Scene& scene, const std::vector<Robot>& ro
     const auto count = static_cast<std::size_t>(choice.parts);
     feeds_.push_back(
         std::make_unique<CameraFeed>(choice, sights_,
-                                     CameraPlace{.changes = &cell.changes(),
+                                     CameraPlace{.index = feeds_.size(),
+                                                 .changes = &cell.changes(),
                                                  .share = {.first = first, .count = count},
                                                  .period = period_,
-                                                 .on_add = on_add}));
+                                                 .listeners = listeners}));
     first += count;
   }
   if (in_step_) return;

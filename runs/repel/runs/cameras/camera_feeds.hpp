@@ -26,9 +26,9 @@ struct CameraResult {
 class CameraFeeds {
  public:
   /// @param scene with cameras @param cell must outlive this object
-  /// @param in_step between the ticks @param on_add see PerceivedOptions
+  /// @param in_step between the ticks @param listeners called where the parts are made
   CameraFeeds(const scene::Scene& scene, const std::vector<Robot>& robots, Cell& cell, bool in_step,
-              const std::function<void(PartId, const Shape&)>& on_add);
+              const CameraListeners& listeners);
   ~CameraFeeds() { stop(); }
   CameraFeeds(const CameraFeeds&) = delete;
   CameraFeeds& operator=(const CameraFeeds&) = delete;

@@ -32,7 +32,7 @@ percepts::CellOptions cells_of(const scene::CameraChoice& choice) {
 percepts::PerceivedOptions perceived(const CameraPlace& place) {
   percepts::PerceivedOptions options;
   options.share = place.share;
-  options.on_add = place.on_add;
+  options.on_add = place.listeners.on_add;
   return options;
 }
 
@@ -87,7 +87,7 @@ octrees::MappedOptions mapped(const scene::CameraChoice& choice, const CameraPla
   options.room = room_of_seen - 0.1;
   options.slack = slack_of(*choice.map);
   options.share = place.share;
-  options.on_add = place.on_add;
+  options.on_add = place.listeners.on_add;
   return options;
 }
 

@@ -14,12 +14,27 @@
 
 namespace repel::runs {
 
+/// An image as it was taken, the robot included.
+struct CameraImage {
+  std::size_t index = 0;  ///< of the camera in its scene
+  double time = 0.0;      ///< [s]
+  const percepts::DepthCamera& camera;
+  std::span<const float> depth;  ///< [m]
+};
+
+/// Who is told what cameras do; either may be empty.
+struct CameraListeners {
+  std::function<void(PartId, const Shape&)> on_add{};  ///< see PerceivedOptions
+  std::function<void(const CameraImage&)> on_image{};  ///< after each image
+};
+
 /// What of the running cell a camera is to have.
 struct CameraPlace {
-  WorldChanges* changes = nullptr;                     ///< not null, outlives the camera
-  ReservedShare share{};                               ///< of the reserved parts, its own
-  double period = 0.0;                                 ///< [s] of the tick
-  std::function<void(PartId, const Shape&)> on_add{};  ///< see PerceivedOptions
+  std::size_t index = 0;            ///< in its scene
+  WorldChanges* changes = nullptr;  ///< not null, outlives the camera
+  ReservedShare share{};            ///< of the reserved parts, its own
+  double period = 0.0;              ///< [s] of the tick
+  CameraListeners listeners{};
 };
 
 /// What an image has changed.

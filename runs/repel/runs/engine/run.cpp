@@ -123,7 +123,7 @@ void show_tick(const Attachments& attached, const Coprocessor& coprocessor, bool
   while (fast && attached.tap->has_log() && attached.tap->log().full()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  if (attached.shapes != nullptr) attached.shapes->date(records.front()->tick);
+  if (attached.beside != nullptr) attached.beside->date(records.front()->tick);
   attached.tap->note(coprocessor, records, times);
 }
 
@@ -137,16 +137,22 @@ std::unique_ptr<CameraFeeds> make_cameras(PreparedRun& prepared, const Attachmen
   if (prepared.scene.cameras.empty()) return nullptr;
   const bool in_step = prepared.options.fast || attached.recording != nullptr;
   Controls* const controls = attached.controls;
-  DatedShapes* const shapes = in_step ? attached.shapes : nullptr;
-  std::function<void(PartId, const Shape&)> on_add;
-  if (controls != nullptr || shapes != nullptr) {
-    on_add = [controls, shapes](PartId part, const Shape& shape) {
+  BesideTicks* const beside = in_step ? attached.beside : nullptr;
+  CameraListeners listeners;
+  if (controls != nullptr || beside != nullptr) {
+    listeners.on_add = [controls, beside](PartId part, const Shape& shape) {
       if (controls != nullptr) controls->shapes.note(part, shape);
-      if (shapes != nullptr) shapes->note(part, shape);
+      if (beside != nullptr) beside->shapes.note({part, shape});
+    };
+  }
+  if (beside != nullptr) {
+    listeners.on_image = [beside](const CameraImage& image) {
+      beside->pictures.note(depth_picture(image.index, image.time, image.camera.width,
+                                          image.camera.height, image.depth));
     };
   }
   return std::make_unique<CameraFeeds>(prepared.scene, prepared.robots, prepared.cell, in_step,
-                                       on_add);
+                                       listeners);
 }
 
 /// Runs the ticks.

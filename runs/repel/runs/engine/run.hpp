@@ -15,7 +15,7 @@
 #include <repel/runs/operator/controls.hpp>
 #include <repel/runs/operator/device.hpp>
 #include <repel/runs/options/hand_track.hpp>
-#include <repel/runs/records/dated_shapes.hpp>
+#include <repel/runs/records/dated.hpp>
 #include <repel/runs/records/recording.hpp>
 #include <repel/runs/report/results.hpp>
 #include <repel/runs/setup/prepared_run.hpp>
@@ -30,7 +30,7 @@ struct Attachments {
   const Recording* recording = nullptr;   ///< to replay, instead of simulated arms and operators
   network::RemoteLink* remote = nullptr;  ///< over which the operator of the arm is
   const std::atomic<bool>* at_once = nullptr;  ///< request to end without fading the forces
-  DatedShapes* shapes = nullptr;  ///< receives those of new parts, if a recording shows them
+  BesideTicks* beside = nullptr;               ///< receives what a recording shows of cameras
   /// SessionOptions::on_tick
   std::function<void(const Cell&, std::span<const TickRecord* const>)> on_tick{};
   std::span<const std::optional<network::Command>> hands{};  ///< SessionOptions::hands

@@ -23,11 +23,11 @@ constexpr std::size_t log_room = 2048;
 class RunLog {
  public:
   RunLog(Tap& tap, const Heading& heading, const PreparedRun& prepared, const RunOptions& options,
-         DatedShapes& shapes)
+         BesideTicks& beside)
       : part_(options.log),
         log_(options.log.ends_with(".mcap")
-                 ? mcap_log(part_.name(), heading, prepared.scene, options, prepared.cell.world(),
-                            prepared.shown, shapes)
+                 ? mcap_log(part_.name(), heading, prepared.scene, options, prepared.cell,
+                            prepared.shown, beside)
                  : csv_log(part_.name(), heading, !options.fast)),
         thread_(tap.log(), *log_, [this](const std::string& trouble) { note(trouble); }) {}
 
@@ -137,10 +137,10 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
   if (remote) controls.no_driving = "the operator is at the station";
   controls.over_device = session.page_drives;
   controls.may_change = !options.log.ends_with(".mcap");
-  DatedShapes shapes;
+  BesideTicks beside;
   std::optional<RunLog> log;
-  if (!options.log.empty()) log.emplace(tap, heading, *prepared, options, shapes);
-  if (options.log.ends_with(".mcap")) attached.shapes = &shapes;
+  if (!options.log.empty()) log.emplace(tap, heading, *prepared, options, beside);
+  if (options.log.ends_with(".mcap")) attached.beside = &beside;
   std::unique_ptr<View> view;
   if (session.view) {
     attached.controls = &controls;

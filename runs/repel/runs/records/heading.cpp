@@ -21,7 +21,10 @@ Heading heading_of(const scene::Scene& scene, const Cell& cell) {
     arm.name = described.name;
     arm.tool = cell.layout(i).tool;
     for (const LinkBody& link : cell.layout(i).links) arm.links.push_back(link.body);
-    for (const ArmLink& link : described.model.links) arm.joints.push_back(link.type);
+    for (const ArmLink& link : described.model.links) {
+      arm.joints.push_back(link.type);
+      arm.joint_names.push_back(link.joint_name);
+    }
     for (const network::Node& node : cell.network(i).nodes()) {
       // A prediction is not one of those that the scene lists, and the last.
       if (node.module.as<network::Prediction>() == nullptr) arm.modules.push_back(node.name);
@@ -32,6 +35,9 @@ Heading heading_of(const scene::Scene& scene, const Cell& cell) {
   for (int i = 0; i < world.body_count(); ++i) heading.bodies.push_back(world.body_name({i}));
   for (std::size_t i = 0; i < world.pairs().size(); ++i) {
     heading.pairs.push_back(name_of(world, {static_cast<std::int32_t>(i)}));
+  }
+  for (const scene::CameraChoice& camera : scene.cameras) {
+    heading.cameras.push_back(camera.name.empty() ? "camera" : camera.name);
   }
   return heading;
 }

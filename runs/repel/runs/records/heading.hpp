@@ -15,8 +15,9 @@ namespace repel::runs {
 struct ArmHeading {
   std::string name;  ///< of the partner; empty for the arm of the scene itself
   BodyId tool;
-  std::vector<BodyId> links;         ///< those with parts
-  std::vector<JointType> joints;     ///< base outward
+  std::vector<BodyId> links;      ///< those with parts
+  std::vector<JointType> joints;  ///< base outward
+  std::vector<std::string> joint_names;
   std::vector<std::string> modules;  ///< of the network, in its order
   std::vector<std::string> phases;   ///< of the script
 
@@ -28,6 +29,7 @@ struct Heading {
   std::vector<ArmHeading> arms;
   std::vector<std::string> bodies;  ///< by BodyId
   std::vector<std::string> pairs;   ///< "part - obstacle", by PairId
+  std::vector<std::string> cameras;
 };
 
 /// "part - obstacle".

@@ -11,8 +11,11 @@
 #include <nlohmann/json.hpp>
 
 #include <repel/record/mcap_writer.hpp>
+#include <repel/runs/records/mcap_events.hpp>
+#include <repel/runs/records/mcap_image.hpp>
 #include <repel/runs/records/mcap_names.hpp>
 #include <repel/runs/records/mcap_scene.hpp>
+#include <repel/runs/records/mcap_time.hpp>
 
 namespace repel::runs {
 namespace {
@@ -168,14 +171,16 @@ Json forces_of(const TickRecord& k, std::size_t joints) {
 class McapLog final : public TickLog {
  public:
   McapLog(const std::string& path, const Heading& heading, const scene::Scene& scene,
-          const RunOptions& options, const World& world, const std::vector<scene::Shown>& shown,
-          DatedShapes& shapes)
+          const RunOptions& options, const Cell& cell, const std::vector<scene::Shown>& shown,
+          BesideTicks& beside)
       : path_(path),
         heading_(heading),
-        frames_(mcap::told_apart(heading.bodies)),
-        parts_(world, heading, shown),
-        pushes_(world, heading),
-        shapes_(shapes),
+        frames_(mcap::frames_of(heading)),
+        joint_names_(joint_names_of(heading)),
+        parts_(cell.world(), heading, shown),
+        pushes_(cell.world(), heading),
+        events_(heading),
+        beside_(beside),
         writer_(path, {.profile = mcap::profile,
                        .chunk_bytes = 1 << 20,
                        .compression = record::McapCompression::zstd}) {
@@ -204,6 +209,16 @@ class McapLog final : public TickLog {
     energy_ = add(mcap::energy);
     timing_ = add(mcap::timing);
     poses_ = add(mcap::poses);
+    joints_ = add(mcap::joints);
+    log_ = add(mcap::log);
+    if (!scene.cameras.empty()) {
+      const std::uint16_t image =
+          writer_.add_schema(mcap::cameras.schema, "jsonschema", mcap::cameras.text);
+      for (const std::string& name : heading.cameras) {
+        cameras_.push_back(writer_.add_channel(mcap::cameras.topic + name, image, "json"));
+      }
+      for (const scene::CameraChoice& camera : scene.cameras) X_WC_.push_back(camera.X_WC);
+    }
     // One schema for both of them.
     const std::uint16_t scene_update =
         writer_.add_schema(mcap::scene_update, "jsonschema", mcap::scene_update_schema());
@@ -212,13 +227,17 @@ class McapLog final : public TickLog {
     every_ = std::max<std::int64_t>(1, std::llround(options.rate_hz / poses_per_second));
     every_scene_ =
         std::max<std::int64_t>(1, std::llround(std::ceil(options.rate_hz / scenes_per_second)));
+    now_ns_ = begin_ns_;
+    say(mcap::Level::info, "the scene " + scene.name + " at " + to_text(options.rate_hz) +
+                               " Hz, by the back end " + options.backend);
+    for (const std::string& warning : cell.warnings()) say(mcap::Level::warning, warning);
     writer_.flush();
     if (writer_.failed()) throw SetupError(writer_.error());
   }
 
   void write(const Snapshot& tick) override {
     const TickRecord& k = tick.arms.front();
-    now_ns_ = begin_ns_ + static_cast<std::uint64_t>(std::llround(1e9 * k.time));
+    now_ns_ = at(k.time);
     sequence_ = static_cast<std::uint32_t>(k.tick);
     Json inputs{{"tick", k.tick}, {"time_s", k.time}, {"arms", Json::array()}};
     Json forces{{"tick", k.tick}, {"arms", Json::array()}};
@@ -238,14 +257,25 @@ class McapLog final : public TickLog {
     put(timing_, {{"tick", k.tick},
                   {"compute_us", static_cast<double>(tick.times.compute.count()) / 1e3},
                   {"late_us", static_cast<double>(tick.times.late.count()) / 1e3}});
-    if (k.tick % every_ == 0) put(poses_, transforms_of(tick));
-    parts_.follow(tick, shapes_.take(k.tick));
+    if (k.tick % every_ == 0) {
+      put(poses_, transforms_of(tick));
+      put(joints_, joints_of(tick));
+    }
+    for (const Json& event : events_.follow(tick, now_ns_)) put(log_, event);
+    for (const DepthPicture& picture : beside_.pictures.take(k.tick)) {
+      const std::string& frame = frames_[heading_.bodies.size() + picture.camera];
+      put(cameras_[picture.camera], mcap::image_json(picture, frame, at(picture.time)));
+    }
+    parts_.follow(tick, beside_.shapes.take(k.tick));
     if (k.tick % every_scene_ != 0) return;
     if (const auto bodies = parts_.update(tick, now_ns_)) put(bodies_, *bodies);
     put(contacts_, pushes_.update(tick, now_ns_));
   }
   void flush() override { writer_.flush(); }
   void close(std::int64_t dropped) override {
+    if (dropped > 0) {
+      say(mcap::Level::warning, "the log was too slow for " + std::to_string(dropped) + " ticks");
+    }
     writer_.add_metadata(mcap::end_metadata, {{"ticks_dropped", std::to_string(dropped)}});
     writer_.close();
   }
@@ -282,6 +312,19 @@ class McapLog final : public TickLog {
     return words;
   }
 
+  static std::vector<std::string> joint_names_of(const Heading& heading) {
+    std::vector<std::string> names;
+    for (const ArmHeading& arm : heading.arms) {
+      for (const std::string& joint : arm.joint_names) names.push_back(arm.prefix() + joint);
+    }
+    return mcap::told_apart(names);
+  }
+
+  /// [ns] Of messages of this scene time [s].
+  [[nodiscard]] std::uint64_t at(double time) const {
+    return begin_ns_ + static_cast<std::uint64_t>(std::llround(1e9 * time));
+  }
+
   void attach(const std::string& name, const char* type, const std::string& path) {
     writer_.attach(name, type, read_file(path), begin_ns_);
   }
@@ -295,6 +338,10 @@ class McapLog final : public TickLog {
   void put(std::uint16_t channel, const Json& message) {
     writer_.write(channel, sequence_, now_ns_,
                   message.dump(-1, ' ', false, Json::error_handler_t::replace));
+  }
+
+  void say(mcap::Level level, const std::string& message) {
+    put(log_, mcap::log_json(now_ns_, level, "repel", message));
   }
 
   [[nodiscard]] Json separations_of(const Snapshot& tick) const {
@@ -330,25 +377,49 @@ class McapLog final : public TickLog {
 
   [[nodiscard]] Json transforms_of(const Snapshot& tick) const {
     Json transforms = Json::array();
-    for (std::size_t i = 1; i < tick.X_WB.size(); ++i) {  // body 0 is the world
-      const Vec3 p = tick.X_WB[i].translation();
-      const Eigen::Quaterniond q(tick.X_WB[i].linear());
+    const auto add = [&](const Pose& X, const std::string& frame) {
+      const Vec3 p = X.translation();
+      const Eigen::Quaterniond q(X.linear());
       transforms.push_back(
-          {{"timestamp", {{"sec", now_ns_ / 1000000000U}, {"nsec", now_ns_ % 1000000000U}}},
+          {{"timestamp", mcap::time_json(now_ns_)},
            {"parent_frame_id", frames_.front()},
-           {"child_frame_id", frames_[i]},
+           {"child_frame_id", frame},
            {"translation", {{"x", p.x()}, {"y", p.y()}, {"z", p.z()}}},
            {"rotation", {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}}}});
-    }
+    };
+    const std::size_t bodies = tick.X_WB.size();
+    for (std::size_t i = 1; i < bodies; ++i) add(tick.X_WB[i], frames_[i]);  // 0 is the world
+    for (std::size_t i = 0; i < X_WC_.size(); ++i) add(X_WC_[i], frames_[bodies + i]);
     return {{"transforms", std::move(transforms)}};
+  }
+
+  [[nodiscard]] Json joints_of(const Snapshot& tick) const {
+    Json joints = Json::array();
+    for (std::size_t arm = 0; arm < heading_.arms.size(); ++arm) {
+      const TickRecord& k = tick.arms[arm];
+      for (std::size_t i = 0; i < heading_.arms[arm].joints.size(); ++i) {
+        Json joint{{"name", joint_names_[joints.size()]}};
+        const auto add = [&](const char* name, double x) {
+          if (std::isfinite(x)) joint[name] = x;
+        };
+        add("position", k.q[i]);
+        add("velocity", k.v[i]);
+        add("effort", k.torques[i]);
+        joints.push_back(std::move(joint));
+      }
+    }
+    return {{"timestamp", mcap::time_json(now_ns_)}, {"joints", std::move(joints)}};
   }
 
   std::string path_;
   Heading heading_;
-  std::vector<std::string> frames_;  // names of the bodies, by BodyId
+  std::vector<std::string> frames_;       // of the bodies, by BodyId, then of the cameras
+  std::vector<std::string> joint_names_;  // of all arms
+  std::vector<Pose> X_WC_;                // [m] of the cameras
   mcap::Bodies parts_;
   mcap::Contacts pushes_;
-  DatedShapes& shapes_;
+  mcap::Events events_;
+  BesideTicks& beside_;
   record::McapWriter writer_;
   std::uint64_t begin_ns_ = 0;
   std::uint64_t now_ns_ = 0;
@@ -356,16 +427,17 @@ class McapLog final : public TickLog {
   std::int64_t every_ = 1;  // ticks between two messages of poses, and of what is drawn
   std::int64_t every_scene_ = 1;
   std::uint16_t inputs_ = 0, forces_ = 0, separations_ = 0, energy_ = 0, timing_ = 0, poses_ = 0,
-                bodies_ = 0, contacts_ = 0;
+                joints_ = 0, log_ = 0, bodies_ = 0, contacts_ = 0;
+  std::vector<std::uint16_t> cameras_;
 };
 
 }  // namespace
 
 std::unique_ptr<TickLog> mcap_log(const std::string& path, const Heading& heading,
                                   const scene::Scene& scene, const RunOptions& options,
-                                  const World& world, const std::vector<scene::Shown>& shown,
-                                  DatedShapes& shapes) {
-  return std::make_unique<McapLog>(path, heading, scene, options, world, shown, shapes);
+                                  const Cell& cell, const std::vector<scene::Shown>& shown,
+                                  BesideTicks& beside) {
+  return std::make_unique<McapLog>(path, heading, scene, options, cell, shown, beside);
 }
 
 }  // namespace repel::runs

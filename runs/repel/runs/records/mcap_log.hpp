@@ -7,7 +7,7 @@
 #include <string>
 
 #include <repel/runs/options/run_options.hpp>
-#include <repel/runs/records/dated_shapes.hpp>
+#include <repel/runs/records/dated.hpp>
 #include <repel/runs/records/heading.hpp>
 #include <repel/runs/records/log.hpp>
 #include <repel/scene/scene.hpp>
@@ -16,14 +16,14 @@ namespace repel::runs {
 
 /// A file for `load_recording`, Foxglove and the `mcap` package; docs/recording.md has its
 /// channels. It contains the scene and the robots too. Compressed if that was built in.
-/// @param world as it is at the start
-/// @param shown of the parts of the world, for their colours
-/// @param shapes those that parts get while the run lasts; must outlive the log
+/// @param cell as it is at the start
+/// @param shown of the parts of its world, for their colours
+/// @param beside what the run tells while it lasts; must outlive the log
 /// @throws SetupError if the file cannot be written
 [[nodiscard]] std::unique_ptr<TickLog> mcap_log(const std::string& path, const Heading& heading,
                                                 const scene::Scene& scene,
-                                                const RunOptions& options, const World& world,
+                                                const RunOptions& options, const Cell& cell,
                                                 const std::vector<scene::Shown>& shown,
-                                                DatedShapes& shapes);
+                                                BesideTicks& beside);
 
 }  // namespace repel::runs

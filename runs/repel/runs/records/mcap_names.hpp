@@ -133,7 +133,50 @@ inline constexpr Channel poses{"/poses", "foxglove.FrameTransforms", R"({
         "x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"},
         "w": {"type": "number"}}}}}}}})"};
 
-/// Likewise; its text is scene_update_schema(). Of two channels, since a viewer that jumps to a
+/// Likewise, as are those below.
+inline constexpr Channel joints{"/joints", "foxglove.JointStates", R"({
+  "title": "foxglove.JointStates", "type": "object",
+  "description": "The joints of all arms; those of a partner begin with its name.",
+  "properties": {
+    "timestamp": {"type": "object", "title": "time", "properties": {
+      "sec": {"type": "integer", "minimum": 0},
+      "nsec": {"type": "integer", "minimum": 0, "maximum": 999999999}}},
+    "joints": {"type": "array", "items": {"type": "object", "title": "foxglove.JointState",
+      "properties": {
+        "name": {"type": "string"},
+        "position": {"type": "number", "description": "[rad] or [m]"},
+        "velocity": {"type": "number", "description": "[rad/s] or [m/s]"},
+        "effort": {"type": "number", "description": "sent to it [N m] or [N]"}}}}}})"};
+
+inline constexpr Channel log{"/log", "foxglove.Log", R"({
+  "title": "foxglove.Log", "type": "object",
+  "description": "Phases of scripts, and faults and limits where they begin and end.",
+  "properties": {
+    "timestamp": {"type": "object", "title": "time", "properties": {
+      "sec": {"type": "integer", "minimum": 0},
+      "nsec": {"type": "integer", "minimum": 0, "maximum": 999999999}}},
+    "level": {"type": "integer", "title": "foxglove.LogLevel",
+      "description": "2: info, 3: warning, 4: error"},
+    "message": {"type": "string"},
+    "name": {"type": "string", "description": "of the arm, or repel"},
+    "file": {"type": "string", "description": "none"},
+    "line": {"type": "integer", "minimum": 0, "description": "none"}}})"};
+
+/// The topic of a camera is this and its name.
+inline constexpr Channel cameras{"/cameras/", "foxglove.RawImage", R"({
+  "title": "foxglove.RawImage", "type": "object",
+  "description": "Depths that a camera has measured, every n-th row and column of them.",
+  "properties": {
+    "timestamp": {"type": "object", "title": "time", "properties": {
+      "sec": {"type": "integer", "minimum": 0},
+      "nsec": {"type": "integer", "minimum": 0, "maximum": 999999999}}},
+    "frame_id": {"type": "string"},
+    "width": {"type": "integer", "minimum": 0}, "height": {"type": "integer", "minimum": 0},
+    "encoding": {"type": "string", "description": "16UC1: [mm], 0: nothing was measured"},
+    "step": {"type": "integer", "minimum": 0, "description": "bytes of a row"},
+    "data": {"type": "string", "contentEncoding": "base64"}}})"};
+
+/// Its text is scene_update_schema(). Of two channels, since a viewer that jumps to a
 /// moment knows only the last message of each.
 inline constexpr const char* scene_update = "foxglove.SceneUpdate";
 inline constexpr const char* bodies_topic = "/bodies";

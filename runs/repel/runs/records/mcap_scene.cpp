@@ -8,6 +8,7 @@
 
 #include <repel/base/setup_error.hpp>
 #include <repel/reduction/shape_mesh.hpp>
+#include <repel/runs/records/mcap_time.hpp>
 
 namespace repel::runs::mcap {
 namespace {
@@ -55,10 +56,6 @@ Entry xyz(const Vec3& p) {
 Entry pose_json(const Vec3& p, const Eigen::Quaterniond& q) {
   return {{"position", xyz(p)},
           {"orientation", {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}}}};
-}
-
-Entry time_json(std::uint64_t ns) {
-  return {{"sec", ns / 1000000000U}, {"nsec", ns % 1000000000U}};
 }
 
 /// An entity without any content. It stays until it is deleted.
@@ -245,8 +242,14 @@ std::vector<std::string> told_apart(const std::vector<std::string>& names) {
   return apart;
 }
 
+std::vector<std::string> frames_of(const Heading& heading) {
+  std::vector<std::string> names = heading.bodies;
+  names.insert(names.end(), heading.cameras.begin(), heading.cameras.end());
+  return told_apart(names);
+}
+
 Bodies::Bodies(const World& world, const Heading& heading, const std::vector<scene::Shown>& shown) {
-  const std::vector<std::string> frames = told_apart(heading.bodies);
+  const std::vector<std::string> frames = frames_of(heading);
   std::vector<std::string> names;
   for (const Part& part : world.parts()) names.push_back(part.name);
   const std::vector<std::string> ids = told_apart(names);
@@ -266,8 +269,8 @@ Bodies::Bodies(const World& world, const Heading& heading, const std::vector<sce
   }
 }
 
-void Bodies::follow(const Snapshot& tick, const std::vector<DatedShapes::Entry>& reshaped) {
-  for (const DatedShapes::Entry& each : reshaped) {
+void Bodies::follow(const Snapshot& tick, const std::vector<NewShape>& reshaped) {
+  for (const NewShape& each : reshaped) {
     waiting_.insert_or_assign(each.part.index, each.shape);
   }
   has_changed_ = has_changed_ || there_ != tick.is_there;
@@ -299,7 +302,7 @@ std::optional<nlohmann::json> Bodies::update(const Snapshot& tick, std::uint64_t
 
 Contacts::Contacts(const World& world, const Heading& heading)
     : world_(heading.bodies.front()), pairs_(told_apart(heading.pairs)) {
-  const std::vector<std::string> frames = told_apart(heading.bodies);
+  const std::vector<std::string> frames = frames_of(heading);
   for (const ArmHeading& arm : heading.arms) {
     sums_.push_back("force on " + frames[static_cast<std::size_t>(arm.tool.index)]);
   }

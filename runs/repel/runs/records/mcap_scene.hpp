@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <repel/loop/tap.hpp>
-#include <repel/runs/records/dated_shapes.hpp>
+#include <repel/runs/records/dated.hpp>
 #include <repel/runs/records/heading.hpp>
 #include <repel/scene/shown.hpp>
 #include <repel/world/world.hpp>
@@ -29,8 +29,8 @@ class Bodies {
   Bodies(const World& world, const Heading& heading, const std::vector<scene::Shown>& shown);
 
   /// To be called at every tick: notes what has come and gone.
-  /// @param reshaped what DatedShapes::take gave for this tick
-  void follow(const Snapshot& tick, const std::vector<DatedShapes::Entry>& reshaped);
+  /// @param reshaped what BesideTicks::shapes gave for this tick
+  void follow(const Snapshot& tick, const std::vector<NewShape>& reshaped);
 
   /// A whole update if parts have come or gone or got another shape since the last one; otherwise
   /// nothing.
@@ -72,5 +72,8 @@ class Contacts {
 /// The names, repeated ones with a number: "seen", "seen #2", ... Viewers tell frames and entities
 /// apart by their names alone.
 [[nodiscard]] std::vector<std::string> told_apart(const std::vector<std::string>& names);
+
+/// The frames of the bodies, by BodyId, and behind them those of the cameras.
+[[nodiscard]] std::vector<std::string> frames_of(const Heading& heading);
 
 }  // namespace repel::runs::mcap
