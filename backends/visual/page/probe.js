@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the page shows, for tests, for pictures of it and for the console: window.repel.state(),
-// distanceSpan(), firstPicture(), pixels(), tinted(), extent(), look(), adapt(), send(),
+// distanceSpan(), firstPicture(), pixels(), tinted(), reach(), look(), adapt(), send(),
 // keyInRoom(), toRoom(), pose().
 
 import { Vector3 } from "./vendor/three.min.js";
@@ -36,7 +36,8 @@ export function startProbe({ connection, stage, parts, marks, gaps, fixtures, ca
         force: frame?.arms?.[0]?.force ?? null,
         hand: frame?.arms?.[0] ? { ...frame.arms[0], energy_j: undefined } : null,
         camera: { mode: cameras.mode, following: cameras.following,
-                  position: stage.camera.position.toArray() },
+                  position: stage.camera.position.toArray(),
+                  target: cameras.controls.target.toArray() },
         xr: headset.told,
         xr_latency_ms: headset.latency,  // from the frame of a pose to the command: p50, p99, max
         theme: theme(),
@@ -53,7 +54,7 @@ export function startProbe({ connection, stage, parts, marks, gaps, fixtures, ca
     firstPicture: () => stage.first,
     pixels: () => stage.pixels(),
     tinted: (colour, within) => stage.tinted(colour, within),
-    extent: () => cameras.extent(),
+    reach: () => cameras.reach(),
     // Whether the scene may be drawn coarser on a slow machine.
     adapt: (yes) => stage.quality.adapt(yes),
     send: (message) => connection.send(message),
