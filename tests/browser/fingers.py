@@ -279,6 +279,25 @@ class Fingers(SharedProgram):
         self.assertTrue(coarsest)
         self.assertEqual(waits, [4, 8, 16])
 
+    def test_the_quality_follows_what_the_processor_takes_where_it_draws(self):
+        self.open_on(DESK)
+        levels = self.module("quality.js", """
+            return [[true, 60], [true, 12], [false, 60]].map(([software, cost]) => {
+              const quality = new module.Quality(() => {}, software);
+              const levels = [quality.level];
+              let now = 0;
+              for (const frame of [17, 17, 60]) {
+                for (let k = 0; k < 16; ++k) {
+                  if (quality.asks()) quality.cost(cost);
+                  quality.frame((now += frame), true);
+                }
+                levels.push(quality.level);
+              }
+              return levels;
+            });""")
+        # No coarser than saves the processor something, unless frames are slow as well.
+        self.assertEqual(levels, [[2, 3, 3, 4], [2, 2, 2, 3], [0, 0, 0, 1]])
+
     def fold(self):
         self.browser.execute_script(
             "for (const each of document.querySelectorAll('details')) each.open = false;")

@@ -13,6 +13,7 @@ export const LEVELS = [
 ];
 
 const SOFTWARE = 2;  // the level to begin with where the processor draws
+const CHEAPEST = 3;  // still fewer pixels save time, but hardly the processor
 
 const SLOW_MS = 45;
 const QUICK_MS = 20;
@@ -83,9 +84,10 @@ export class Quality {
     if (++this.#count < FRAMES) return;
     const mean = this.#sum / this.#count;
     const cost = this.software ? (this.#cost / COST_MS) * SLOW_MS : 0;
+    const counts = this.level < CHEAPEST ? cost : Math.min(cost, SLOW_MS);
     this.#sum = this.#count = 0;
     this.#cost = Infinity;
-    this.#set(decide(this.#now, Math.max(mean, cost)));
+    this.#set(decide(this.#now, Math.max(mean, counts)));
   }
 
   #set(next) {
