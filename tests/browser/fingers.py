@@ -53,6 +53,20 @@ SMALLEST = """
     return small;"""
 
 
+# What lies on the rectangle that the views show.
+COVERED = """
+    const view = document.getElementById("view").getBoundingClientRect();
+    const [[left, right], [low, high]] = repel.reach();
+    const x = (at) => view.left + ((at + 1) / 2) * view.width;
+    const y = (at) => view.top + ((1 - at) / 2) * view.height;
+    return [...document.querySelectorAll(".view .card, .triad, .stick, .view .numbers")]
+      .filter((card) => {
+        const box = card.getBoundingClientRect();
+        return card.checkVisibility() && box.left < x(right) && box.right > x(left) &&
+               box.top < y(low) && box.bottom > y(high);
+      }).map((card) => card.className);"""
+
+
 class Fingers(SharedProgram):
     """Small screens, and fingers on them."""
 
@@ -177,7 +191,8 @@ class Fingers(SharedProgram):
         page = self.open_on(PHONE)
 
         def span():
-            return max(self.browser.execute_script("return window.repel.extent() ?? [9]"))
+            return self.browser.execute_script(
+                "return Math.max(...(repel.reach() ?? [[9]]).flat().map(Math.abs))")
         page.until(lambda s: span() < 1, "all is seen")
         width, height, _ = PHONE
         self.turn(height, width, True)
@@ -193,6 +208,36 @@ class Fingers(SharedProgram):
         self.touch("touchEnd")
         page.until(lambda s: span() > 1.2 * before, "it is closer")
         self.assertFalse(page.state()["operator"]["you"])
+
+    def test_home_shows_all_beside_what_lies_on_the_scene(self):
+        for size in (PHONE, TABLET, DESK, (1920, 1080, False)):
+            with self.subTest(size=size):
+                page = self.open_on(size)
+                page.draws()
+                page.click("view-home")
+                self.assertEqual(self.browser.execute_script(COVERED), [])
+
+    def test_the_ends_of_the_axes_turn_the_camera(self):
+        page = self.open_on(DESK)
+        page.draws()
+
+        def ends(name):
+            return self.browser.find_element("css selector", f"#triad [title='Look from {name}']")
+
+        def away():
+            return self.browser.execute_script("""
+                const {position, target} = repel.state().camera;
+                const by = position.map((p, k) => p - target[k]);
+                return by.map((b) => Math.round(100 * b / Math.hypot(...by)) / 100);""")
+        before = page.state()["camera"]["position"]
+        ends("+x").click()
+        self.assertEqual(away(), [1, 0, 0])
+        page.until(lambda s: s["camera"]["position"] != before, "it is elsewhere")
+        ends("+z").send_keys(Keys.ENTER)
+        self.assertEqual(away(), [0, 0, 1])
+        self.assertEqual(page.state()["camera"]["mode"], "free")
+        page.press("1")
+        self.assertEqual(page.state()["camera"]["mode"], "home")
 
     def test_a_hidden_page_draws_nothing_and_lets_its_line_go(self):
         page = self.open_on(DESK)
@@ -237,6 +282,25 @@ class Fingers(SharedProgram):
         self.assertEqual(levels, [0, 1, 1, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2])
         self.assertTrue(coarsest)
         self.assertEqual(waits, [4, 8, 16])
+
+    def test_the_quality_follows_what_the_processor_takes_where_it_draws(self):
+        self.open_on(DESK)
+        levels = self.module("quality.js", """
+            return [[true, 60], [true, 12], [false, 60]].map(([software, cost]) => {
+              const quality = new module.Quality(() => {}, software);
+              const levels = [quality.level];
+              let now = 0;
+              for (const frame of [17, 17, 60]) {
+                for (let k = 0; k < 16; ++k) {
+                  if (quality.asks()) quality.cost(cost);
+                  quality.frame((now += frame), true);
+                }
+                levels.push(quality.level);
+              }
+              return levels;
+            });""")
+        # No coarser than saves the processor something, unless frames are slow as well.
+        self.assertEqual(levels, [[2, 3, 3, 4], [2, 2, 2, 3], [0, 0, 0, 1]])
 
     def fold(self):
         self.browser.execute_script(

@@ -41,6 +41,63 @@ class Gaps(OwnProgram):
         self.assertFalse(page.shown("gap-row"))
 
 
+class OwnColours(OwnProgram):
+    """Parts with a colour and an opacity of their own, from a message made here."""
+
+    # The table is pink, what stands on it is glass.
+    COLOURS = """
+        const parse = JSON.parse;
+        JSON.parse = (text) => {
+          const message = parse(text);
+          for (const part of message?.type === "scene" ? message.parts : []) {
+            if (part.name === "table") part.color = [1, 0, 0.7];
+            else if (part.group === "obstacle") Object.assign(part, {color: [0, 1, 1], opacity: 0});
+          }
+          return message;
+        };"""
+
+    def test_a_part_is_drawn_in_its_colour_and_glass_hides_nothing(self):
+        self.draw_pixels()
+        url = self.start()
+        pink = "repel.adapt(false); return repel.tinted([230, 0, 165], 40)"
+        page = self.open(url)
+        page.begin()
+        page.draws()
+        self.assertEqual(self.browser.execute_script(pink), 0)
+        self.before_pages(self.COLOURS)
+        page = self.open(url)
+        page.begin()
+        page.draws()
+        table = self.browser.execute_script(pink)
+        self.assertGreater(table, 10000)
+        looks = self.module("wire.js", """
+            const parts = [{color: [0.1, 0.2, 0.3], opacity: 0.4}, {}, {color: [1, "x", 0]},
+                           {opacity: 7}].map((part) => ({...part, name: "p"}));
+            return module.scene({parts}).parts.map(({color, opacity}) => [color, opacity]);""")
+        self.assertEqual(looks, [[[0.1, 0.2, 0.3], 0.4], [None, 1], [None, 1], [None, 1]])
+
+    def test_parts_that_look_the_same_share_a_material(self):
+        self.open(self.start())
+        shared = self.module("looks.js", """
+            const made = [];
+            const surface = () => {
+              const color = {setRGB: (...values) => (color.values = values),
+                             copy: ({values}) => (color.values = values)};
+              made.push(color);
+              return {color};
+            };
+            const looks = new module.Looks({surface, invalidate: () => {}});
+            const one = looks.of("obstacle", [0.5, 0, 0], 1);
+            const same = looks.of("obstacle", [0.5, 0, 0], 1) === one;
+            const glass = looks.of("obstacle", [0.5, 0, 0], 0.3);
+            looks.fade(0.25);
+            const faded = [one.whole.opacity, glass.whole.opacity, one.whole.depthWrite];
+            looks.fade(1);
+            return [same, glass === one, one.glass, glass.glass, made.length, ...faded,
+                    one.whole.transparent, glass.whole.transparent, glass.whole.opacity];""")
+        self.assertEqual(shared, [True, False, False, True, 4, 0.25, 0.25, False, False, True, 0.3])
+
+
 def placed(pose, p):
     """A point of a frame, in the world. pose: [x, y, z, qx, qy, qz, qw]"""
     q, w = pose[3:6], pose[6]
@@ -87,8 +144,8 @@ class Looks(OwnProgram):
         page.until(lambda s: s["drawn"]["parts"] < parts, "what is under it is not seen")
         green = "return repel.tinted([0, 200, 40], 55)"
         self.assertGreater(self.browser.execute_script(green), 100)
-        self.assertLess(max(self.browser.execute_script("return repel.extent()")), 1.05,
-                        "the camera fits the parts alone")
+        reach = self.browser.execute_script("return repel.reach().flat()")
+        self.assertLess(max(map(abs, reach)), 1.05, "the camera fits the parts alone")
         page.click("show-menu")
         self.assertTrue(page.shown("show-robot"))
         page.choose("show-robot", "parts")

@@ -3,6 +3,7 @@
 // in the middle.
 
 import { OrbitControls, Vector3 } from "./vendor/three.min.js";
+import { openings } from "./beside.js";
 import { at } from "./words.js";
 
 // From where each view looks, seen from the middle of the scene.
@@ -13,7 +14,8 @@ const VIEWS = {
   top: [-0.0001, 0, 1],
 };
 
-const MARGIN = 1.12;  // around what is seen
+const MARGIN = 1.06;  // around what is seen
+const UPRIGHT = 1e-4;  // how little a look along z is off it, for the picture to have an up
 const FOLLOWED = 7.5;  // distance while following, in radii of the tool
 
 export class Cameras {
@@ -52,53 +54,92 @@ export class Cameras {
     const { camera } = this.stage;
     const away = new Vector3(...VIEWS[name]).normalize();
     const middle = this.controls.target;
-    let distance = this.#followed();
-    if (this.following) middle.copy(this.#tool);
-    else distance = this.#fit(away, middle);
+    const distance = this.following ? this.#center() : this.#fit(away, middle);
     camera.position.copy(away).multiplyScalar(distance).add(middle);
     this.controls.update();
     this.stage.invalidate();
   }
 
-  // Finds the point to look at, and the distance, for all corners to be seen from a direction.
+  // Looks from an end of an axis of the world at what is in the middle now, from as far.
+  turn(axis) {
+    this.mode = "free";
+    const { position } = this.stage.camera;
+    const away = this.#step.subVectors(position, this.controls.target);
+    const distance = away.length();
+    away.setZ(0).setLength(UPRIGHT);
+    position.fromArray(axis).add(away).setLength(distance).add(this.controls.target);
+    this.controls.update();
+    this.stage.invalidate();
+  }
+
+  // The tool is to be in the middle of the picture. Returns from how far it is looked at.
+  #center() {
+    this.controls.target.copy(this.#tool);
+    this.stage.camera.clearViewOffset();
+    return this.#followed();
+  }
+
+  // Finds the point to look at, and the distance, for all corners to be seen from a direction
+  // beside what lies on the picture, as large as they can be.
   #fit(away, middle) {
-    const { camera } = this.stage;
-    const free = Math.max(0.3, 1 - this.stage.covered() / this.stage.canvas.clientHeight);
-    const high = (Math.tan((camera.fov * Math.PI) / 360) / MARGIN) * free;
+    const { camera, canvas } = this.stage;
+    const { clientWidth: width, clientHeight: height } = canvas;
+    const [wide, high] = this.#fill(away, middle, width, height).seen;
+    const larger = (a, b) => (Math.min(b.width / wide, b.height / high) >
+                              Math.min(a.width / wide, a.height / high) ? b : a);
+    const room = openings(canvas.parentElement).reduce(larger);
+    const { x, y } = room;
+    camera.setViewOffset(width, height, (width - room.width) / 2 - x,
+                         (height - room.height) / 2 - y, width, height);
+    return this.#fill(away, middle, room.width, room.height).distance;
+  }
+
+  // The same for a room of so many pixels around the middle of the picture. `seen`: width and
+  // height of what is seen.
+  #fill(away, middle, width, height) {
+    const { camera, canvas } = this.stage;
+    const pixel = (2 * Math.tan((camera.fov * Math.PI) / 360)) / canvas.clientHeight;
+    const [wide, high] = [width, height].map((side) => (side * pixel) / 2 / MARGIN);
     const corners = this.cornersNow();
-    const wide = (high / free) * camera.aspect;
     const right = new Vector3().crossVectors(camera.up, away).normalize();
     const up = new Vector3().crossVectors(away, right);
     const q = this.#step;
     middle.set(0, 0, 0);
     for (const corner of corners) middle.addScaledVector(corner, 1 / corners.length);
     let distance = 1;
+    let seen = [1, 1];
     for (let round = 0; round < 4; ++round) {
       distance = Math.max(...corners.map((corner) => {
         q.subVectors(corner, middle);
         return Math.max(Math.abs(q.dot(right)) / wide, Math.abs(q.dot(up)) / high) + q.dot(away);
       }));
-      for (const side of [right, up]) {
-        const seen = corners.map((corner) => {
+      seen = [right, up].map((side) => {
+        const reach = corners.map((corner) => {
           q.subVectors(corner, middle);
           return q.dot(side) / (distance - q.dot(away));
         });
-        middle.addScaledVector(side, ((Math.max(...seen) + Math.min(...seen)) / 2) * distance);
-      }
+        const [most, least] = [Math.max(...reach), Math.min(...reach)];
+        middle.addScaledVector(side, ((most + least) / 2) * distance);
+        return (most - least) / pixel;
+      });
     }
-    return distance;
+    return { distance, seen };
   }
 
-  // How far what the views show reaches towards the rim of the picture, 1: sideways and upwards;
-  // null before the first frame.
-  extent() {
+  // What the views show reaches from where to where, of the rim of the picture, 1: [least, most]
+  // sideways and upwards; null before the first frame.
+  reach() {
     if (!this.cornersNow) return null;
     const seen = this.cornersNow().map((corner) => corner.project(this.stage.camera));
-    return ["x", "y"].map((k) => Math.max(...seen.map((point) => Math.abs(point[k]))));
+    return ["x", "y"].map((k) => {
+      const all = seen.map((point) => point[k]);
+      return [Math.min(...all), Math.max(...all)];
+    });
   }
 
   look(position, target) {
     this.mode = "free";
+    this.stage.camera.clearViewOffset();
     this.controls.target.fromArray(target);
     this.stage.camera.position.fromArray(position);
     this.controls.update();
@@ -118,8 +159,7 @@ export class Cameras {
       // Closer, from where one looks already.
       const { position } = this.stage.camera;
       const away = position.clone().sub(this.controls.target).normalize();
-      this.controls.target.copy(this.#tool);
-      position.copy(this.#tool).addScaledVector(away, this.#followed());
+      position.copy(this.#tool).addScaledVector(away, this.#center());
       this.stage.invalidate();
     } else {
       this.view(this.mode in VIEWS ? this.mode : "home");

@@ -11,7 +11,6 @@ const FOLDED = matchMedia("(max-width: 900px), (pointer: coarse)");
 const MOVES = [["numbers", "append", "top"], ["drive-body", "prepend", "panel"],
                ["legend", "append", "panel"]];
 
-const ROW_PX = 60;
 const homes = new Map();
 
 function fold() {
@@ -33,9 +32,6 @@ function open(yes) {
   document.documentElement.classList.toggle("opened", yes);
   at("panel-open").setAttribute("aria-expanded", String(yes));
 }
-
-// How much of the height of the scene lies below the rows of buttons, where they are large.
-export const covered = () => (FOLDED.matches ? 2 * ROW_PX : 0);
 
 export const drawerOpen = () => at("panel-open").getAttribute("aria-expanded") === "true";
 

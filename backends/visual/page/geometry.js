@@ -54,6 +54,14 @@ function geometryOf(positions, normals) {
   return geometry;
 }
 
+// The corners of the box around it.
+export function cornersOf(geometry) {
+  geometry.computeBoundingBox();
+  const { min, max } = geometry.boundingBox;
+  return Array.from({ length: 8 }, (_, k) => new Vector3(
+    k & 1 ? max.x : min.x, k & 2 ? max.y : min.y, k & 4 ? max.z : min.z));
+}
+
 // The surface, with a normal for each corner of each triangle: the mean over the faces around that
 // meet it smoothly.
 export function surface(level) {

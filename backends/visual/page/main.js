@@ -10,7 +10,7 @@ import { Charts } from "./charts.js";
 import { Connection } from "./connection.js";
 import { Controls } from "./controls.js";
 import { Drag } from "./drag.js";
-import { covered, startDrawer } from "./drawer.js";
+import { startDrawer } from "./drawer.js";
 import { Events } from "./events.js";
 import { Gamepad } from "./gamepad.js";
 import { Gaps } from "./gaps.js";
@@ -64,7 +64,6 @@ try {
   banner("webgl", "This browser gives no WebGL: the scene cannot be drawn");
   throw error;
 }
-stage.covered = covered;
 const parts = new Parts(stage);
 const visuals = new Visuals(stage, parts);
 const cameras = new Cameras(stage);
@@ -72,7 +71,7 @@ const labels = new Labels(at("labels"), stage);
 const marks = new Marks(stage, labels);
 const gaps = new Gaps(stage, parts);
 const fixtures = new Fixtures(stage);
-const triad = new Triad(at("triad"), stage.camera);
+const triad = new Triad(at("triad"), cameras);
 const trail = new Trail(stage);
 const signals = new SignalHistory();
 const charts = new Charts(signals);
@@ -232,9 +231,10 @@ function move(frame) {
     const corners = parts.corners();
     const { center, radius } = new Sphere().setFromPoints(corners);
     state.radius = radius;
-    stage.fit(center, radius, Math.min(0, ...corners.map((corner) => corner.z)));
+    stage.fit(center, radius, Math.min(0, ...corners.map((corner) => corner.z)), state.scene);
     const tool = parts.corners(state.scene?.arms[0]?.tool_body);
-    cameras.frame(() => parts.corners(), new Sphere().setFromPoints(tool).radius || radius / 4);
+    cameras.frame(() => [...parts.corners(), ...visuals.corners()],
+                  new Sphere().setFromPoints(tool).radius || radius / 4);
     showMenu.scale();
     follow({ cameras, charts });
   }

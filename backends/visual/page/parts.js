@@ -2,15 +2,15 @@
 // The parts of the scene: solids on bodies that move, their edges, zones of influence, levels.
 
 import {
-  BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineDashedMaterial, LineSegments, Mesh,
-  MeshBasicMaterial, MeshLambertMaterial, Quaternion, Raycaster, Vector3,
+  BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineDashedMaterial,
+  LineSegments, Mesh, MeshBasicMaterial, Quaternion, Raycaster, Vector3,
 } from "./vendor/three.min.js";
-import { edges, levelFrames, shell, surface } from "./geometry.js";
+import { cornersOf, edges, levelFrames, shell, surface } from "./geometry.js";
+import { Looks } from "./looks.js";
 import { settings } from "./settings.js";
 import { colour, onTheme } from "./theme.js";
 
-// Pushed back a little, for the edges to be seen whole.
-const BEHIND_EDGES = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
+const PASSABLE = 0.34;  // opacity, at most, of what may be passed
 
 export function place(object, pose) {
   if (!pose) return;
@@ -20,16 +20,10 @@ export function place(object, pose) {
 
 export class Parts {
   #materials = {
-    tool: new MeshLambertMaterial(BEHIND_EDGES),
-    link: new MeshLambertMaterial(BEHIND_EDGES),
-    obstacle: new MeshLambertMaterial(BEHIND_EDGES),
-    seeThrough: new MeshLambertMaterial({ transparent: true, opacity: 0.22, depthWrite: false }),
-    passable: new MeshLambertMaterial({ transparent: true, opacity: 0.34, depthWrite: false }),
     zone: new MeshBasicMaterial({ transparent: true, opacity: 0.07, depthWrite: false }),
     edge: new LineBasicMaterial({ transparent: true, opacity: 0.55 }),
     dashed: new LineDashedMaterial({ dashSize: 0.012, gapSize: 0.008 }),
     level: new LineBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false }),
-    faint: new MeshLambertMaterial({ transparent: true, opacity: 0.3, depthWrite: false }),
     ghost: new MeshBasicMaterial({ transparent: true, opacity: 0.22, depthTest: false }),
   };
 
@@ -41,6 +35,8 @@ export class Parts {
 
   constructor(stage) {
     this.stage = stage;
+    this.looks = new Looks(stage);
+    this.faint = stage.surface({ transparent: true, opacity: 0.3, depthWrite: false });
     this.bodies = [];
     this.outlines = [];  // by body: the edges of its parts
     this.parts = [];
@@ -76,8 +72,7 @@ export class Parts {
       holder.traverse((object) => object.geometry?.dispose());
       holder.removeFromParent();
       const pose = [...holder.position.toArray(), ...holder.quaternion.toArray()];
-      const { passable, range_m } = this.scene.parts[k];
-      this.parts[k] = this.#part({ levels, group, body, pose, passable, range_m });
+      this.parts[k] = this.#part({ ...this.scene.parts[k], levels, group, body, pose });
       this.parts[k].holder.visible = !this.#hidden.has(k);
       this.#outline(body);
     }
@@ -92,13 +87,13 @@ export class Parts {
 
   #part(part) {
     const group = ["tool", "link"].includes(part.group) ? part.group : "obstacle";
-    const kind = part.passable ? "passable" : group;
+    const look = this.looks.of(part.passable ? "passable" : group, part.color,
+                               Math.min(part.opacity, part.passable ? PASSABLE : 1));
     const { levels } = part;
     const holder = new Group();
     place(holder, part.pose);
-    const solid = new Mesh(surface(levels[0] ?? {}), this.#materials[kind]);
-    solid.castShadow = !part.passable;
-    solid.receiveShadow = !part.passable;
+    const solid = new Mesh(surface(levels[0] ?? {}), look.whole);
+    solid.castShadow = solid.receiveShadow = !look.glass;
     const border = edges(levels[0] ?? {});
     if (part.passable) {
       holder.add(new LineSegments(border, this.#materials.dashed).computeLineDistances());
@@ -113,9 +108,8 @@ export class Parts {
       holder.add(zone);
     }
     (this.bodies[part.body] ?? this.stage.scene).add(holder);
-    const material = solid.material;
-    return { holder, solid, border: part.passable ? null : border, material, frames, groups, zone, group: part.group,
-             body: part.body, hides: false, faint: false };
+    return { holder, solid, border: part.passable ? null : border, look, frames, groups, zone,
+             group: part.group, body: part.body, hides: false, faint: false };
   }
 
   // The edges of all parts of a body that are seen, as one: where the processor draws, each call
@@ -169,20 +163,13 @@ export class Parts {
     for (const body of changed) this.#outline(body);
   }
 
-  #give(part) {
-    const { seeThrough, faint } = this.#materials;
-    part.solid.material = part.faint ? faint : part.hides ? seeThrough : part.material;
+  #give({ solid, look, faint, hides }) {
+    solid.material = faint ? this.faint : hides ? look.through : look.whole;
   }
 
   showLevels() {
     const mode = settings.levels;
-    const solidity = mode === "none" ? 1 : 0.25;
-    for (const name of ["tool", "link", "obstacle"]) {
-      const material = this.#materials[name];
-      if (material.opacity !== solidity) material.needsUpdate = true;
-      const whole = solidity === 1;
-      Object.assign(material, { opacity: solidity, transparent: !whole, depthWrite: whole });
-    }
+    this.looks.fade(mode === "none" ? 1 : 0.25);
     for (const { frames, groups } of this.parts) {
       const one = groups[Math.min(settings.level, groups.length - 1)] ?? [0, 0];
       frames.visible = mode !== "none";
@@ -191,13 +178,12 @@ export class Parts {
     this.stage.invalidate();
   }
 
-  // Makes what hides one of these points from the eye see-through. Not the tool, and not what may
-  // be passed, which is so already. Returns the bodies that are.
+  // Makes what hides one of these points from the eye see-through. Not the tool, and not glass and
+  // what may be passed, which are so already. Returns the bodies that are.
   clear(eye, points) {
-    const { tool, passable } = this.#materials;
     const bodies = new Set();
     for (const part of this.parts) {
-      if (part.material === tool || part.material === passable) continue;
+      if (part.look.kind === "tool" || part.look.glass) continue;
       part.hides = this.hides(part.solid, eye, points);
       if (part.hides && part.group !== "obstacle") bodies.add(part.body);
       this.#give(part);
@@ -225,13 +211,7 @@ export class Parts {
     for (const part of this.parts) {
       const { geometry, matrixWorld } = part.solid;
       if (geometry.attributes.position.count === 0 || ![null, part.body].includes(body)) continue;
-      geometry.computeBoundingBox();
-      const { min, max } = geometry.boundingBox;
-      for (let k = 0; k < 8; ++k) {
-        const corner = new Vector3(k & 1 ? max.x : min.x, k & 2 ? max.y : min.y,
-                                   k & 4 ? max.z : min.z);
-        corners.push(corner.applyMatrix4(matrixWorld));
-      }
+      corners.push(...cornersOf(geometry).map((corner) => corner.applyMatrix4(matrixWorld)));
     }
     return corners;
   }
@@ -344,11 +324,8 @@ export class Parts {
   }
 
   #paint() {
-    for (const name of ["tool", "link", "obstacle", "passable", "edge", "level"]) {
-      this.#materials[name].color = new Color(colour(name));
-    }
-    this.#materials.seeThrough.color = new Color(colour("obstacle"));
-    this.#materials.faint.color = new Color(colour("near"));
+    for (const name of ["edge", "level"]) this.#materials[name].color = new Color(colour(name));
+    this.faint.color = new Color(colour("near"));
     this.#materials.zone.color = new Color(colour("near"));
     this.#materials.dashed.color = new Color(colour("passable"));
     this.#materials.ghost.color = new Color(colour("operator"));

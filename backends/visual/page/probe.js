@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the page shows, for tests, for pictures of it and for the console: window.repel.state(),
-// distanceSpan(), firstPicture(), pixels(), tinted(), extent(), project(), look(), adapt(), send(),
+// distanceSpan(), firstPicture(), pixels(), tinted(), reach(), project(), look(), adapt(), send(),
 // keyInRoom(), toRoom(), pose().
 
 import { Vector3 } from "./vendor/three.min.js";
@@ -36,7 +36,8 @@ export function startProbe({ connection, stage, parts, marks, gaps, fixtures, ca
         force: frame?.arms?.[0]?.force ?? null,
         hand: frame?.arms?.[0] ? { ...frame.arms[0], energy_j: undefined } : null,
         camera: { mode: cameras.mode, following: cameras.following,
-                  position: stage.camera.position.toArray() },
+                  position: stage.camera.position.toArray(),
+                  target: cameras.controls.target.toArray() },
         inspected: inspector.body?.name ?? null,
         measured: measure.ends,
         charts: { names: charts.names, points: charts.points, paused: charts.paused },
@@ -57,7 +58,7 @@ export function startProbe({ connection, stage, parts, marks, gaps, fixtures, ca
     firstPicture: () => stage.first,
     pixels: () => stage.pixels(),
     tinted: (colour, within) => stage.tinted(colour, within),
-    extent: () => cameras.extent(),
+    reach: () => cameras.reach(),
     // Where a point of the world is seen: -1 to 1 to the right and up.
     project: (point) => new Vector3().fromArray(point).project(stage.camera).toArray(),
     // Whether the scene may be drawn coarser on a slow machine.

@@ -7,17 +7,21 @@
 export const LEVELS = [
   { pixels: 1, shadow: true },
   { pixels: 1, shadow: false },
-  { pixels: 0.75, shadow: false },
+  { pixels: 0.85, shadow: false },
+  { pixels: 0.7, shadow: false },
   { pixels: 0.5, shadow: false },
 ];
 
 const SOFTWARE = 2;  // the level to begin with where the processor draws
+const CHEAPEST = 3;  // still fewer pixels save time, but hardly the processor
 
 const SLOW_MS = 45;
 const QUICK_MS = 20;
+const COST_MS = 18;  // of the processor to draw a picture, which is as bad as a slow frame
 const LEAST_PATIENCE = 4;  // quick means in a row before it gets finer
 const MOST_PATIENCE = 64;
 const FRAMES = 15;  // to a mean
+const ASKS = 5;  // pictures from one whose cost is measured to the next
 const PAUSE_MS = 2000;  // a longer gap is no frame: the machine slept, or nothing was to be drawn
 
 export const finest = () => ({ level: 0, quick: 0, patience: LEAST_PATIENCE, raised: false });
@@ -39,10 +43,13 @@ export class Quality {
   #sum = 0;
   #count = 0;
   #last = null;
+  #cost = Infinity;  // the least of those measured [ms]
+  #pictures = 0;
 
   // `apply(level of LEVELS)` hears of every change. `software`: the processor draws.
   constructor(apply, software) {
     this.apply = apply;
+    this.software = software;
     this.adapts = true;
     if (software) this.#now.level = SOFTWARE;
   }
@@ -58,6 +65,16 @@ export class Quality {
     this.apply(LEVELS[0]);
   }
 
+  // Before each picture: whether it wants to know what the processor takes for this one, for which
+  // one has to wait.
+  asks() {
+    return this.software && this.adapts && this.#pictures++ % ASKS === 0;
+  }
+
+  cost(ms) {
+    this.#cost = Math.min(this.#cost, ms);
+  }
+
   // At every turn of the browser, with whether the scene was drawn at it.
   frame(now, drawn) {
     const took = this.#last === null ? Infinity : now - this.#last;
@@ -66,8 +83,11 @@ export class Quality {
     this.#sum += took;
     if (++this.#count < FRAMES) return;
     const mean = this.#sum / this.#count;
+    const cost = this.software ? (this.#cost / COST_MS) * SLOW_MS : 0;
+    const counts = this.level < CHEAPEST ? cost : Math.min(cost, SLOW_MS);
     this.#sum = this.#count = 0;
-    this.#set(decide(this.#now, mean));
+    this.#cost = Infinity;
+    this.#set(decide(this.#now, Math.max(mean, counts)));
   }
 
   #set(next) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The stage: renderer, light, and the floor with its grid. z is up.
+// The stage: renderer, camera and light. z is up.
 
 import {
-  BufferAttribute, BufferGeometry, Color, DirectionalLight, Group, HemisphereLight,
-  LineBasicMaterial, LineSegments, Mesh, PCFShadowMap, PerspectiveCamera, PlaneGeometry, Scene,
-  ShadowMaterial, Sphere, Vector3, WebGLRenderer,
+  Color, DirectionalLight, Group, HemisphereLight, MeshLambertMaterial, MeshStandardMaterial,
+  PCFShadowMap, PerspectiveCamera, Scene, Sphere, Vector3, WebGLRenderer,
 } from "./vendor/three.min.js";
+import { environment } from "./environment.js";
+import { Floor } from "./floor.js";
 import { LEVELS, Quality } from "./quality.js";
 import { shadeAtCorners } from "./shading.js";
 import { colour, onTheme } from "./theme.js";
@@ -24,10 +25,19 @@ function drawsInHardware() {
   return !SOFTWARE.test(name);
 }
 
+// Where the sun is, seen from the middle of the scene, in radii: to the right of who looks from
+// home, for each of the three sides of a box that are seen from there to have a light of its own.
+const SUN = [0.7, -1.68, 2.23];
+// What a white surface that faces up throws back of sky and sun is 1: so it has the colour that the
+// legend shows. Where a graphics card draws, most of the sky is what is mirrored.
+const SUNLIGHT = 2.04;
+const SKY = 1.57;
+const SKY_BESIDE_MIRRORED = 0.25;
+const MIRRORED = 0.55;
+
 export class Stage {
   rendered = 0;
   first = null;  // when the first picture was drawn, from the navigation on [ms]
-  covered = () => 0;  // pixels of its height that lie below buttons
   onResize = () => {};  // hears of the width over the height that the picture had
   sphere = null;  // that holds the scene, and its lowest point [m]
   lowest = 0;
@@ -39,8 +49,9 @@ export class Stage {
     const software = !drawsInHardware();
     if (software) shadeAtCorners();
     this.smooth = !software;
-    // Smooth edges are four times the pixels.
-    this.renderer = new WebGLRenderer({ canvas, antialias: !software, alpha: true });
+    // Smooth edges are four times the pixels, and a picture that the page shows through is mixed
+    // with it.
+    this.renderer = new WebGLRenderer({ canvas, antialias: !software, alpha: !software });
     this.renderer.shadowMap.type = PCFShadowMap;
     this.renderer.xr.enabled = true;
     this.scene = new Scene();
@@ -51,7 +62,8 @@ export class Stage {
     this.camera.up.set(0, 0, 1);
     this.rig.add(this.camera);
     this.#light();
-    this.#floor();
+    this.floor = new Floor();
+    this.scene.add(this.floor);
     onTheme(() => this.#paint());
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement);
     this.#resize();
@@ -80,6 +92,12 @@ export class Stage {
     this.scene.background = on ? new Color(colour("sky")) : null;
   }
 
+  // A material of solids: it shines where a graphics card draws.
+  surface(options, roughness = 0.5) {
+    return this.smooth ? new MeshStandardMaterial({ roughness, ...options })
+      : new MeshLambertMaterial(options);
+  }
+
   // The picture has the page again.
   restore() {
     this.#resize();
@@ -90,10 +108,24 @@ export class Stage {
   render() {
     if (!this.#dirty && !this.immersive) return false;
     this.#dirty = false;
+    // The room of who looks has a floor of its own.
+    this.floor.disc.visible = !this.immersive || this.scene.background !== null;
+    const asked = !this.immersive && this.quality.asks();
+    const begun = performance.now();
     this.renderer.render(this.scene, this.camera);
+    if (asked) {
+      this.#finish();
+      this.quality.cost(performance.now() - begun);
+    }
     this.rendered += 1;
     this.first ??= performance.now();
     return true;
+  }
+
+  // Waits until it is drawn.
+  #finish() {
+    const gl = this.renderer.getContext();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
   setShadows(on) {
@@ -101,18 +133,13 @@ export class Stage {
     this.#refine();
   }
 
-  // Lays the floor and its grid under what there is: a sphere that holds it, and its lowest point.
-  fit(center, radius, lowest) {
+  // Lays the floor under a scene and lights it: a sphere that holds it, and its lowest point.
+  fit(center, radius, lowest, scene) {
     const around = Math.max(radius, 0.05);
     this.sphere = new Sphere(center.clone(), around);
     this.lowest = lowest;
-    this.spacing = 10 ** Math.floor(Math.log10(around / 2.5));
-    this.ground.position.set(center.x, center.y, lowest - 0.002);
-    this.ground.scale.setScalar(8 * around);
-    this.grid.geometry.dispose();
-    this.grid.geometry = gridGeometry(center, 1.9 * around, this.spacing);
-    this.grid.position.z = lowest - 0.001;
-    this.sun.position.set(center.x + around, center.y - 0.9 * around, center.z + 2.6 * around);
+    this.spacing = this.floor.lay(scene, center.clone().setZ(lowest), around);
+    this.sun.position.fromArray(SUN).multiplyScalar(around).add(center);
     this.sun.target.position.copy(center);
     const box = this.sun.shadow.camera;
     box.left = box.bottom = -1.3 * around;
@@ -126,29 +153,21 @@ export class Stage {
   }
 
   #light() {
-    this.sky = new HemisphereLight(0xffffff, 0x8a8f96, 1.75);
+    this.sky = new HemisphereLight(0xffffff, 0xd6d9dd, this.smooth ? SKY_BESIDE_MIRRORED : SKY);
     this.sky.position.set(0, 0, 1);
-    this.sun = new DirectionalLight(0xffffff, 1.55);
-    this.sun.shadow.mapSize.set(1024, 1024);
+    this.sun = new DirectionalLight(0xffffff, SUNLIGHT);
+    this.sun.shadow.mapSize.setScalar(1024);
+    this.sun.shadow.radius = this.smooth ? 6 : 1;
     this.sun.shadow.bias = -0.0005;
     this.sun.shadow.normalBias = 0.004;
     this.scene.add(this.sky, this.sun, this.sun.target);
-  }
-
-  #floor() {
-    this.ground = new Mesh(new PlaneGeometry(1, 1), new ShadowMaterial({ transparent: true }));
-    this.ground.receiveShadow = true;
-    const lines = new LineBasicMaterial({
-      vertexColors: true, transparent: true, depthWrite: false,
-    });
-    this.grid = new LineSegments(new BufferGeometry(), lines);
-    this.scene.add(this.ground, this.grid);
+    this.scene.environmentIntensity = MIRRORED;
+    if (this.smooth) this.scene.environment = environment(this.renderer);
   }
 
   #paint() {
-    this.grid.material.color.set(colour("grid"));
-    this.ground.material.opacity = Number(colour("shade"));
-    this.sky.groundColor = new Color(colour("ground"));
+    this.floor.paint();
+    if (!this.smooth) this.renderer.setClearColor(colour("sky"), 1);
     this.surround(this.scene.background !== null);
     this.invalidate();
   }
@@ -167,7 +186,7 @@ export class Stage {
     const cast = this.shadows && level.shadow;
     shadowMap.enabled = cast;
     this.sun.castShadow = cast;
-    this.ground.visible = cast;
+    this.floor.shade.visible = cast;
     this.invalidate();
   }
 
@@ -226,33 +245,4 @@ export class Stage {
     const mean = sum.map((s) => s / count);
     return { width, height, mean, variance: squares.map((s, k) => s / count - mean[k] ** 2) };
   }
-}
-
-// Lines that fade towards the rim; each tenth is stronger.
-function gridGeometry(center, radius, spacing) {
-  const positions = [];
-  const colours = [];
-  const pieces = 16;
-  const shade = (x, y, strong) =>
-    Math.max(0, 1 - Math.hypot(x - center.x, y - center.y) / radius) * (strong ? 0.75 : 0.3);
-  const line = (value, axis, from) => {
-    const strong = Math.round(value / spacing) % 10 === 0;
-    for (let k = 0; k < pieces; ++k) {
-      for (const end of [k, k + 1]) {
-        const other = from + (2 * radius * end) / pieces;
-        const [x, y] = axis === 0 ? [value, other] : [other, value];
-        positions.push(x, y, 0);
-        colours.push(1, 1, 1, shade(x, y, strong));
-      }
-    }
-  };
-  for (const [axis, middle, across] of [[0, center.x, center.y], [1, center.y, center.x]]) {
-    const first = Math.ceil((middle - radius) / spacing);
-    const last = Math.floor((middle + radius) / spacing);
-    for (let k = first; k <= last; ++k) line(k * spacing, axis, across - radius);
-  }
-  const geometry = new BufferGeometry();
-  geometry.setAttribute("position", new BufferAttribute(new Float32Array(positions), 3));
-  geometry.setAttribute("color", new BufferAttribute(new Float32Array(colours), 4));
-  return geometry;
 }

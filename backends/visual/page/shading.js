@@ -20,9 +20,16 @@ const DECLARED = `
                      vec3(lessThanEqual(c, vec3(0.0031308))));
     return vec4(shown, linear.a);
   }`;
+// Where three.js says so, what a corner tells of opacity does not count.
+const OPAQUE = `
+    #ifdef OPAQUE
+      gl_FragColor.a = 1.0;
+    #endif`;
 const PAINTED = `
   varying vec4 vPaint;
-  void main() { gl_FragColor = vPaint; }`;
+  void main() {
+    gl_FragColor = vPaint;${OPAQUE}
+  }`;
 
 const LIT = `
   #include <lights_pars_begin>

@@ -2,31 +2,29 @@
 // The robot as it looks: meshes that move with the bodies and exert no force. Those of one body are
 // drawn in one call, and so are those of one link without a body, of which a frame says where it is.
 
-import {
-  BufferAttribute, BufferGeometry, Color, DoubleSide, Matrix4, Mesh, MeshLambertMaterial,
-  Quaternion, Vector3,
-} from "./vendor/three.min.js";
-import { creased } from "./geometry.js";
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh } from "./vendor/three.min.js";
+import { matrixOf } from "./floor.js";
+import { cornersOf, creased } from "./geometry.js";
 import { place } from "./parts.js";
 import { settings } from "./settings.js";
 import { colour, onTheme } from "./theme.js";
 
 const BASE = 0;  // the body that stands still
-const ONE = new Vector3(1, 1, 1);
+const NEAR = 1.3;  // of the radius of the scene
 
 export class Visuals {
   #bodies = new Map();  // by body: its mesh
   #links = [];  // of those without a body: { mesh, arm, k }, the k-th that a frame tells of that arm
+  #base = [];  // corners of boxes around each that stands still
   #plain = [];  // [mesh, first corner, number of corners] of what has no colour of its own
-  #materials = {
-    whole: new MeshLambertMaterial({ vertexColors: true, side: DoubleSide }),
-    seeThrough: new MeshLambertMaterial({ vertexColors: true, side: DoubleSide, transparent: true,
-                                          opacity: 0.22, depthWrite: false }),
-  };
 
   constructor(stage, parts) {
     this.stage = stage;
     this.parts = parts;
+    const painted = { vertexColors: true, side: DoubleSide };
+    this.whole = stage.surface(painted);
+    this.seeThrough = stage.surface({ ...painted, transparent: true, opacity: 0.22,
+                                      depthWrite: false });
     onTheme(() => this.#paint());
   }
 
@@ -43,6 +41,7 @@ export class Visuals {
     this.#bodies.clear();
     this.#links.length = 0;
     this.#plain.length = 0;
+    this.#base.length = 0;
     this.parts.bodies.forEach((group, body) => {
       const mesh = this.#build(scene.visuals.filter((visual) => visual.body === body), group);
       if (mesh) this.#bodies.set(body, mesh);
@@ -68,15 +67,16 @@ export class Visuals {
     const attribute = () => new BufferAttribute(new Float32Array(3 * count), 3);
     const geometry = new BufferGeometry();
     for (const name of ["position", "normal", "color"]) geometry.setAttribute(name, attribute());
-    const mesh = new Mesh(geometry, this.#materials.whole);
+    const mesh = new Mesh(geometry, this.whole);
     let first = 0;
-    visuals.forEach(({ pose, color }, k) => {
+    visuals.forEach(({ body, pose, color }, k) => {
       const { positions, normals } = surfaces[k];
       const corners = positions.length / 3;
       const placed = new BufferGeometry();
       placed.setAttribute("position", new BufferAttribute(positions, 3));
       placed.setAttribute("normal", new BufferAttribute(normals, 3));
-      if (pose) placed.applyMatrix4(matrixOf(pose));
+      placed.applyMatrix4(matrixOf(pose));
+      if (body === BASE) this.#base.push(...cornersOf(placed));
       geometry.attributes.position.array.set(placed.attributes.position.array, 3 * first);
       geometry.attributes.normal.array.set(placed.attributes.normal.array, 3 * first);
       const range = [mesh, first, corners];
@@ -117,10 +117,18 @@ export class Visuals {
     this.stage.invalidate();
   }
 
+  // Corners of boxes around what stands still near the parts: the foot of a robot belongs into the
+  // picture, a hall does not.
+  corners() {
+    const { center, radius } = this.stage.sphere;
+    return this.#base.filter((corner) => corner.distanceTo(center) < NEAR * radius)
+      .map((corner) => corner.clone());
+  }
+
   // Makes what hides the tool see-through. `hiding`: the bodies of which a part does; a link without
   // a body has no parts that would tell, so its looks are asked whether they hide these points.
   clear(hiding, eye, points) {
-    const { whole, seeThrough } = this.#materials;
+    const { whole, seeThrough } = this;
     for (const [body, mesh] of this.#bodies) {
       mesh.material = hiding.has(body) ? seeThrough : whole;
     }
@@ -143,11 +151,6 @@ export class Visuals {
     for (const range of this.#plain) fill(range, link);
     this.show();
   }
-}
-
-function matrixOf([x, y, z, qx, qy, qz, qw]) {
-  const turn = new Quaternion(qx, qy, qz, qw).normalize();
-  return new Matrix4().compose(new Vector3(x, y, z), turn, ONE);
 }
 
 function fill([mesh, first, count], { r, g, b }) {

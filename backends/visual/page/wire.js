@@ -23,10 +23,12 @@ function level(x) {
 }
 
 function part(x) {
-  const { name, of, body, group, arm, pose: at, passable, range_m, levels, gaps, gap_count } =
-    object(x);
-  return { name: text(name) || "?", of: text(of), body, group: text(group), arm: number(arm) ?? 0, pose: pose(at),
+  const { name, of, body, group, arm, pose: at, passable, range_m, levels, gaps, gap_count, color,
+          opacity } = object(x);
+  return { name: text(name) || "?", of: text(of), body, group: text(group), arm: number(arm) ?? 0,
+           pose: pose(at),
            passable: passable === true, range_m: number(range_m) ?? 0,
+           color: vector(color), opacity: Math.min(1, Math.max(0, number(opacity) ?? 1)),
            levels: list(levels).map(level), gap_count: number(gap_count) ?? 0,
            gaps: list(gaps).map((gap) => vector(gap, 4)).filter((gap) => gap !== null) };
 }
