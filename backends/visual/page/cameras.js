@@ -30,8 +30,13 @@ export class Cameras {
     this.controls = new OrbitControls(stage.camera, stage.canvas);
     this.controls.enableDamping = true;
     this.controls.dampingFactor = 0.12;
-    this.controls.addEventListener("change", () => stage.invalidate());
-    this.controls.addEventListener("start", () => (this.mode = "free"));
+    let held = false;  // a click alone does not leave a view
+    this.controls.addEventListener("start", () => (held = true));
+    this.controls.addEventListener("end", () => (held = false));
+    this.controls.addEventListener("change", () => {
+      if (held) this.mode = "free";
+      stage.invalidate();
+    });
     stage.target = this.controls.target;
     stage.onResize = (before) => this.#resized(before);
     for (const name of Object.keys(VIEWS)) {

@@ -24,6 +24,7 @@ const GROUPS = [
   ]],
   ["Mouse", [
     ["drag", "orbit; right button shifts"],
+    ["click", "look at a body closely"],
     ["wheel", "closer, farther"],
     ["drag the ring", "lead the tool, once you drive"],
     ["Shift drag", "the same, from anywhere"],
@@ -69,7 +70,7 @@ export function startHelp() {
     const list = element("dl", "", group);
     for (const [key, meaning] of keys) {
       const term = element("dt", "", list);
-      const one = /drag|wheel|stick|finger|trigger/.test(key) ? [key] : key.split(" ");
+      const one = /drag|click|wheel|stick|finger|trigger/.test(key) ? [key] : key.split(" ");
       for (const cap of one) element("kbd", cap, term);
       element("dd", meaning, list);
     }
