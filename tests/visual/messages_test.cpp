@@ -67,10 +67,9 @@ std::set<std::string> keys_of(const Json& object) {
 TEST(Messages, TheSceneIsOfTheDocumentedForm) {
   const Stage stage;
   const Json scene = Json::parse(scene_message(stage.info, stage.world));
-  EXPECT_EQ(keys_of(scene),
-            (std::set<std::string>{"type", "version", "name", "rate_hz", "period_us", "mode",
-                                   "duration_s", "bodies", "parts", "pairs", "laws", "arms",
-                                   "scripted"}));
+  EXPECT_EQ(keys_of(scene), (std::set<std::string>{"type", "version", "name", "rate_hz",
+                                                   "period_us", "mode", "duration_s", "bodies",
+                                                   "parts", "pairs", "laws", "arms", "scripted"}));
   EXPECT_EQ(scene.at("scripted"), true);
   EXPECT_EQ(scene.at("type"), "scene");
   EXPECT_EQ(scene.at("mode"), "live");
@@ -153,8 +152,8 @@ TEST(Messages, AnArmHasTheSignalsOfItsLogAndTheLimitsOfItsJoints) {
   ASSERT_EQ(values.size(), names.size());
   const auto value_of = [&](const char* name) {
     const auto found = std::find(names.begin(), names.end(), name);
-    return found == names.end() ? Json("none") : values.at(
-        static_cast<std::size_t>(found - names.begin()));
+    return found == names.end() ? Json("none")
+                                : values.at(static_cast<std::size_t>(found - names.begin()));
   };
   EXPECT_EQ(value_of("z_m"), 0.3);
   EXPECT_EQ(value_of("q1_rad"), 0.5);
@@ -185,8 +184,7 @@ TEST(Messages, EveryChangeOfTheStatusHasItsTick) {
   TickSample samples[4];
   for (std::size_t i = 0; i < 4; ++i) samples[i].tick = static_cast<std::int64_t>(100 + i);
   samples[1].status = samples[2].status = status::saturated;
-  const Json frame =
-      Json::parse(frame_message(stage.info, stage.world, stage.shot, samples, true));
+  const Json frame = Json::parse(frame_message(stage.info, stage.world, stage.shot, samples, true));
   EXPECT_EQ(frame.at("recent").at("status"),
             Json::parse(R"([[100, []], [101, ["saturated"]], [103, []]])"));
 }
@@ -339,9 +337,9 @@ TEST(Messages, AFrameIsOfTheDocumentedForm) {
   EXPECT_EQ(arm.at("energy_j").size(), 2U);
   EXPECT_EQ(frame.at("recent").at("tick"), (Json{1233, 1234}));
   EXPECT_EQ(frame.at("recent").at("nearest_m"), (Json{0.01, nullptr}));
-  EXPECT_EQ(keys_of(frame.at("recent")),
-            (std::set<std::string>{"tick", "nearest_m", "force_n", "compute_us", "late_us",
-                                   "status"}));
+  EXPECT_EQ(
+      keys_of(frame.at("recent")),
+      (std::set<std::string>{"tick", "nearest_m", "force_n", "compute_us", "late_us", "status"}));
 }
 
 /// Turns about z by its first joint, then slides along its own x.

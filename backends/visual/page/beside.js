@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where on the picture of the scene nothing lies.
 
-const LYING = ".top > *, .foot > *, .sticks > *";
+const LYING = ".top > *, .foot > *, .sticks > *, .tour";
 const GAP = 8;  // around it [px]
 
 // The rectangles { x, y, width, height } [px] of an element that reach from what lies on it, or the

@@ -176,11 +176,16 @@ export class Cameras {
     return (FOLLOWED * this.nearby) / Math.min(1, this.stage.camera.aspect);
   }
 
+  // Something else lies on the scene: a fixed view is fitted again.
+  refit() {
+    if (this.mode in VIEWS && !this.following) this.view(this.mode);
+  }
+
   // The picture has another shape, `before` was its width over its height: a fixed view is fitted
   // again, from elsewhere as much is seen as before.
   #resized(before) {
     if (!this.cornersNow) return;
-    if (this.mode in VIEWS && !this.following) return this.view(this.mode);
+    if (this.mode in VIEWS && !this.following) return this.refit();
     const { camera } = this.stage;
     const { target } = this.controls;
     const farther = Math.min(1, before) / Math.min(1, camera.aspect);

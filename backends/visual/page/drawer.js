@@ -9,7 +9,8 @@ const FOLDED = matchMedia("(max-width: 900px), (pointer: coarse)");
 
 // What stands elsewhere while the page is folded: at the end or the beginning of what.
 const MOVES = [["numbers", "append", "top"], ["drive-body", "prepend", "panel"],
-               ["legend", "append", "panel"]];
+               ["legend", "append", "panel"], ["takeaway", "append", "show-menu-body"],
+               ["tour", "append", "top"]];
 
 const homes = new Map();
 

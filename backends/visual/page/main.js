@@ -108,7 +108,8 @@ const controls = new Controls(connection, [keyboard, gamepad, new SpaceMouse(), 
                                            ...headset.clutches], lever, hand, heading);
 headset.drives(controls);
 const events = new Events((time) => transport.go(time));
-const tour = new Tour(() => state.scene?.mode === "live" && state.operator?.looksOn === false);
+const tour = new Tour(() => state.scene?.mode === "live" && state.operator?.looksOn === false,
+                      () => cameras.refit());
 startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras, strips, visuals, headset,
              inspector, measure, charts, events });
 

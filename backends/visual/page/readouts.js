@@ -39,7 +39,7 @@ export class Readouts {
     const ranges = scene.parts.map((part) => part.range_m).filter((range) => range > 0);
     if (ranges.length > 0) write(at("ramp-text"), `${mm(Math.max(...ranges), 0)} to 0 mm`);
     const walls = scene.parts.filter((part) => part.group === "obstacle");
-    at("wall-key").hidden = walls.every((part) => part.passable);
+    at("wall-key").hidden = walls.every((part) => part.passable || part.color);
     at("membrane-key").hidden = !walls.some((part) => part.passable);
     at("stale-key").hidden = true;
     this.#arms(scene.arms);

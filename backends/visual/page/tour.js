@@ -35,9 +35,10 @@ export class Tour {
   #step = -1;
   #asked = false;
 
-  // `mayDrive()`: whether this page may take the controls at all.
-  constructor(mayDrive) {
-    this.mayDrive = mayDrive;
+  // `mayDrive()`: whether this page may take the controls at all; `moved()` hears that the card has
+  // come or gone.
+  constructor(mayDrive, moved) {
+    Object.assign(this, { mayDrive, moved });
     at("tour-next").addEventListener("click", () => this.#next());
     at("tour-skip").addEventListener("click", () => this.#end());
     at("tour-again").addEventListener("click", () => {
@@ -50,7 +51,7 @@ export class Tour {
   offer() {
     if (this.#asked || settings.toured || !this.mayDrive()) return;
     this.#asked = true;
-    at("tour").hidden = false;
+    this.#show(true);
     write(at("tour-text"), "Here for the first time? A tour of two minutes shows how walls feel.");
     write(at("tour-next"), "Start");
     write(at("tour-skip"), "No, thanks");
@@ -59,13 +60,18 @@ export class Tour {
   start() {
     this.#asked = true;
     this.#step = -1;
-    at("tour").hidden = false;
+    this.#show(true);
     this.#next();
   }
 
   frame() {
     const step = STEPS[this.#step];
     if (step?.done?.()) this.#next();
+  }
+
+  #show(yes) {
+    at("tour").hidden = !yes;
+    this.moved();
   }
 
   #next() {
@@ -80,7 +86,7 @@ export class Tour {
 
   #end() {
     this.#step = -1;
-    at("tour").hidden = true;
+    this.#show(false);
     set("toured", true);
   }
 }

@@ -18,16 +18,16 @@ namespace repel::visual {
 
 /// One arm of a world, for display.
 struct ArmInfo {
-  std::string name;                  ///< empty if there is only one
-  BodyId tool;                       ///< moves with its tool frame
-  std::vector<BodyId> links;         ///< those with parts
-  std::vector<std::string> joints;   ///< "revolute" or "prismatic", base outward
+  std::string name;                       ///< empty if there is only one
+  BodyId tool;                            ///< moves with its tool frame
+  std::vector<BodyId> links;              ///< those with parts
+  std::vector<std::string> joints;        ///< "revolute" or "prismatic", base outward
   std::vector<ArmLink> links_of_model{};  ///< names and limits of the joints; may be left out
-  std::vector<std::string> modules;  ///< of its network, in the same order
-  std::vector<std::string> phases;   ///< names of the phases of its script; none: it has none
-  double max_speed = 0.25;           ///< [m/s] maximum command of its master
-  double max_turn = 1.0;             ///< [rad/s] likewise
-  double max_lever_rate = 1.5;       ///< [rad/s] maximum commanded lever motion
+  std::vector<std::string> modules;       ///< of its network, in the same order
+  std::vector<std::string> phases;        ///< names of the phases of its script; none: it has none
+  double max_speed = 0.25;                ///< [m/s] maximum command of its master
+  double max_turn = 1.0;                  ///< [rad/s] likewise
+  double max_lever_rate = 1.5;            ///< [rad/s] maximum commanded lever motion
   /// Places the links that VisualInfo::link names, if there are any. It belongs to one view and is
   /// moved in its thread: never that of a cell.
   std::shared_ptr<ArmKinematics> kinematics{};
