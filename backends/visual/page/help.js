@@ -25,6 +25,7 @@ const GROUPS = [
   ["Mouse", [
     ["drag", "orbit; right button shifts"],
     ["wheel", "closer, farther"],
+    ["axis", "click on an end: look from there"],
     ["drag the ring", "lead the tool, once you drive"],
     ["Shift drag", "the same, from anywhere"],
     ["drag a box", "move it; with Alt up and down"],
