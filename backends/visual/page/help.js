@@ -26,6 +26,7 @@ const GROUPS = [
     ["drag", "orbit; right button shifts"],
     ["click", "look at a body closely"],
     ["wheel", "closer, farther"],
+    ["axis", "click on an end: look from there"],
     ["drag the ring", "lead the tool, once you drive"],
     ["Shift drag", "the same, from anywhere"],
     ["drag a box", "move it; with Alt up and down"],
