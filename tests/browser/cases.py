@@ -22,6 +22,17 @@ WHITE = """
     }"""
 
 
+# As who has been here before sees it: no tour is offered.
+BEEN_HERE = """
+    try {
+      if (!localStorage.getItem("repel.settings")) {
+        localStorage.setItem("repel.settings", '{"toured": true}');
+      }
+    } catch {
+      // A page that is none of ours.
+    }"""
+
+
 class TheBrowser:
     """Started for the first test that wants it, and again after a test that failed in it."""
 
@@ -118,6 +129,7 @@ class InBrowser(unittest.TestCase):
         browser.execute_cdp_cmd("Emulation.setFocusEmulationEnabled", {"enabled": True})
         live.set_theme(browser, "light")
         self.save_time()
+        self.been_here = self.before_pages(BEEN_HERE)
         browser.get_log("browser")  # what was said before
 
     def save_time(self):
@@ -127,8 +139,12 @@ class InBrowser(unittest.TestCase):
 
     def draw_pixels(self):
         """In the pages of this tab that are opened from now on."""
+        self.forget(self.white)
+
+    def forget(self, script):
+        """One of before_pages()."""
         self.browser.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument",
-                                     {"identifier": self.white})
+                                     {"identifier": script})
 
     def resize(self, width, height, touch=False):
         self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {

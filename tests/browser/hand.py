@@ -106,8 +106,8 @@ class Hand(OwnProgram):
         page.stand_in("feel it", 7.5)
         page.until(lambda s: page.shown("felt-force"), "there is a force")
         self.assertFalse(page.shown("felt-lever"))
-        page.until_text("felt-force", r"[1-9]\d*\.\d\d N\n")
-        page.until_text("felt-torque", r"\d\.\d\d N m\n")
+        page.until_text("felt-force", r"[1-9]\d*\.\d\d of \d+ N\n")
+        page.until_text("felt-torque", r"\d\.\d\d of [\d.]+ N m\n")
 
     @by_the_clock
     def test_the_keys_move_the_hand_that_is_chosen(self):

@@ -10,6 +10,7 @@ import { colour, onTheme } from "./theme.js";
 import { at, brief } from "./words.js";
 
 const TINTS = ["operator", "force", "fixture", "level", "near", "far"];
+const MOST = 8;  // charts at the start
 const HEIGHT = 150;
 const FIRST = [["force_n"], ["nearest_m"]];
 const SPAN_S = 20;  // what is seen until it is zoomed
@@ -32,6 +33,7 @@ function uPlotLoaded() {
 
 export class Charts {
   #charts = [];  // { names, element, plot }
+  #wanted = null;  // names by chart, until the page of the charts is seen
   #held = null;  // the columns of each chart, from when it was paused
   #zoom = null;  // [from, to] in seconds; null: the last seconds
   #zooming = false;
@@ -59,18 +61,23 @@ export class Charts {
 
   // Another scene or arm has other signals; `names` are wanted, those that it has.
   arm(names = settings.charts) {
-    const known = new Set(signalNames());
-    for (const { element } of this.#charts) element.remove();
+    for (const { plot, element } of this.#charts) {
+      plot?.destroy();
+      element.remove();
+    }
     this.#charts.length = 0;
     this.#pause(false);
-    const wanted = (Array.isArray(names) && names.length > 0 ? names : FIRST)
-      .filter(Array.isArray)
-      .map((some) => some.filter((name) => known.has(name)).slice(0, TINTS.length));
-    for (const some of wanted.slice(0, 8)) this.#add(some);
+    this.#wanted = Array.isArray(names) && names.length > 0 ? names : FIRST;
   }
 
   frame() {
-    if (this.#held || at("pane-charts").hidden) return;
+    if (at("pane-charts").hidden) return;
+    const known = new Set(signalNames());
+    for (const some of this.#wanted?.filter(Array.isArray).slice(0, MOST) ?? []) {
+      this.#add(some.filter((name) => known.has(name)).slice(0, TINTS.length));
+    }
+    this.#wanted = null;
+    if (this.#held) return;
     for (const chart of this.#charts) this.#show(chart);
   }
 
