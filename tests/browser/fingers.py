@@ -350,6 +350,13 @@ class Fingers(SharedProgram):
                     "for (const each of document.querySelectorAll('details')) each.open = true")
                 with self.subTest("all open", size=size, dark=dark):
                     self.assertEqual(self.violations(axe), [])
+                for name in ("bodies", "joints", "charts", "events", "now"):
+                    with self.subTest(name, size=size, dark=dark):
+                        page.click(f"tab-{name}")
+                        page.draws()
+                        self.assertEqual(self.violations(axe), [])
+                        if size[2]:
+                            self.assertEqual(self.browser.execute_script(SMALLEST), [])
                 self.fold()
                 page.press("?")
                 with self.subTest("help", size=size, dark=dark):

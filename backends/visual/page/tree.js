@@ -52,7 +52,8 @@ export class Tree {
 
   #row(body) {
     const row = document.createElement("li");
-    const box = row.appendChild(document.createElement("input"));
+    const box = row.appendChild(document.createElement("label"))
+      .appendChild(document.createElement("input"));
     box.type = "checkbox";
     box.checked = !body.parts.every((k) => this.parts.isHidden(k));
     box.setAttribute("aria-label", `show ${body.name}`);
