@@ -98,6 +98,27 @@ class OwnColours(OwnProgram):
         self.assertEqual(shared, [True, False, False, True, 4, 0.25, 0.25, False, False, True, 0.3])
 
 
+class Many(OwnProgram):
+    def test_of_a_million_points_it_says_what_it_leaves_out(self):
+        # The table of the scene, with a million corners.
+        self.before_pages("""
+            const parse = JSON.parse;
+            JSON.parse = (text) => {
+              const message = parse(text);
+              if (message?.type !== "scene") return message;
+              const table = message.parts.find((part) => part.name === "table");
+              table.levels[0].vertices = Array.from({length: 3000000}, (_, k) => (k % 1009) / 1009);
+              return message;
+            };""")
+        page = self.open(self.start())
+        page.until_said("banners", "^1 part is not drawn: .* more than 300000 corners$")
+        page.begin()
+        before = page.draws()["drawn"]["parts"]
+        self.assertGreater(before, 10, "the others are drawn")
+        page.take()
+        page.steps(40)
+
+
 def placed(pose, p):
     """A point of a frame, in the world. pose: [x, y, z, qx, qy, qz, qw]"""
     q, w = pose[3:6], pose[6]

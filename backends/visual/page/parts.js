@@ -7,10 +7,13 @@ import {
 } from "./vendor/three.min.js";
 import { cornersOf, edges, levelFrames, shell, surface } from "./geometry.js";
 import { Looks } from "./looks.js";
+import { banner } from "./messages.js";
 import { settings } from "./settings.js";
 import { colour, onTheme } from "./theme.js";
 
 const PASSABLE = 0.34;  // opacity, at most, of what may be passed
+
+const MOST_CORNERS = 300000;  // more take seconds to build, and slow each picture
 
 export function place(object, pose) {
   if (!pose) return;
@@ -27,6 +30,9 @@ export class Parts {
     ghost: new MeshBasicMaterial({ transparent: true, opacity: 0.22, depthTest: false }),
   };
 
+  #corners = [];  // by part: those that are drawn, of all levels
+  #drawn = 0;  // the sum of these
+  #left = new Set();  // parts that are not drawn
   #hidden = new Set();  // parts that somebody has hidden
   #marked = { selected: new Set(), highlighted: new Set() };
   #ray = new Raycaster();
@@ -52,7 +58,10 @@ export class Parts {
     for (const body of this.bodies) this.#drop(body);
     this.bodies = scene.bodies.map(() => new Group());
     for (const body of this.bodies) this.stage.scene.add(body);
-    this.parts = scene.parts.map((part) => this.#part(part));
+    this.#corners = scene.parts.map(() => 0);
+    this.#drawn = 0;
+    this.#left.clear();
+    this.parts = scene.parts.map((part, k) => this.#part(this.#bounded(part, k)));
     this.outlines = this.bodies.map((body) => {
       const lines = new LineSegments(new BufferGeometry(), this.#materials.edge);
       body.add(lines);
@@ -62,6 +71,7 @@ export class Parts {
     this.mostLevels = Math.max(1, ...this.parts.map((part) => part.groups.length));
     this.showLevels();
     this.showZones();
+    this.#sayLeft();
   }
 
   // Gives parts other shapes.
@@ -72,12 +82,34 @@ export class Parts {
       holder.traverse((object) => object.geometry?.dispose());
       holder.removeFromParent();
       const pose = [...holder.position.toArray(), ...holder.quaternion.toArray()];
-      this.parts[k] = this.#part({ ...this.scene.parts[k], levels, group, body, pose });
+      const bounded = this.#bounded({ ...this.scene.parts[k], levels, group, body, pose }, k);
+      this.parts[k] = this.#part(bounded);
       this.parts[k].holder.visible = !this.#hidden.has(k);
       this.#outline(body);
     }
     this.showLevels();
     this.showZones();
+    this.#sayLeft();
+  }
+
+  // A part as it is, or without its shape where all together would be too much for a browser.
+  #bounded(part, k) {
+    const count = part.levels.reduce((sum, { vertices }) => sum + vertices.length / 3, 0);
+    const others = this.#drawn - this.#corners[k];
+    const fits = others + count <= MOST_CORNERS;
+    this.#corners[k] = fits ? count : 0;
+    this.#drawn = others + this.#corners[k];
+    if (fits) this.#left.delete(k);
+    else this.#left.add(k);
+    return fits ? part : { ...part, levels: [] };
+  }
+
+  // Says what is left out.
+  #sayLeft() {
+    const { size } = this.#left;
+    const parts = size === 1 ? "1 part is" : `${size} parts are`;
+    banner("left", size > 0 ? `${parts} not drawn: with them there would be more than ` +
+                              `${MOST_CORNERS} corners` : "", true);
   }
 
   #drop(body) {
