@@ -274,7 +274,10 @@ void LivePages::refresh(Pages& pages) {
   }
   if (now < next_timing_) return;
   next_timing_ = now + std::chrono::milliseconds(500);
-  if (pages.count() > 0) pages.send_all(timing_message(timing_));
+  const std::map<std::string, DepthView> depths = controls_.depths.take();
+  if (pages.count() == 0) return;
+  pages.send_all(timing_message(timing_));
+  for (const auto& [camera, view] : depths) pages.send_all(depth_message(camera, view));
 }
 
 std::optional<LivePages::Clock::time_point> LivePages::next_refresh() const {

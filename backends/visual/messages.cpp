@@ -390,6 +390,15 @@ std::string parts_message(const std::map<std::int32_t, Shape>& shapes) {
   return Json{{"type", "parts"}, {"parts", parts}}.dump();
 }
 
+std::string depth_message(const std::string& camera, const DepthView& view) {
+  const Json json{{"type", "depth"},
+                  {"camera", camera},
+                  {"width", view.width},
+                  {"height", view.height},
+                  {"mm", view.depth}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 std::string frame_message(const SceneInfo& info, const World& world, const Snapshot& shot,
                           std::span<const TickSample> recent, bool running) {
   const TickRecord& first = shot.arms.front();

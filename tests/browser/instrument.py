@@ -198,3 +198,15 @@ class ReplayedEvents(SharedProgram):
         time = float(first.text.split(" s")[0])
         self.browser.execute_script("arguments[0].click()", first)
         page.until(lambda s: not s["running"] and abs(s["time_s"] - time) < 0.02, "it is there")
+
+
+class Camera(OwnProgram):
+    def test_the_image_of_a_depth_camera_is_shown(self):
+        page = self.open(self.start(live.scene("seen")))
+        page.until(lambda _: page.shown("depth-card"), "there is an image")
+        self.assertRegex(page.text("depth-text"), r"^camera: \d\.\d\d to \d+\.\d\d m$")
+        several = self.browser.execute_script("""
+            const canvas = document.getElementById("depth");
+            const {data} = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+            return new Set(data.filter((_, k) => k % 4 === 0)).size;""")
+        self.assertGreater(several, 5, "near and far")

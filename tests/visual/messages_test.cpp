@@ -178,6 +178,15 @@ TEST(Messages, AFrameSaysWhatHardWallsHold) {
   EXPECT_EQ(hold_of(), (Json{{"pair", 1}, {"margin_m", 0.004}, {"force_n", 12.0}}));
 }
 
+TEST(Messages, AnImageOfACameraIsToldInMillimetres) {
+  const Json told = Json::parse(depth_message("left \"eye\"", {2, 1, {412, 0}}));
+  EXPECT_EQ(told, (Json{{"type", "depth"},
+                        {"camera", "left \"eye\""},
+                        {"width", 2},
+                        {"height", 1},
+                        {"mm", {412, 0}}}));
+}
+
 // A bit of one tick would be missed in pictures alone.
 TEST(Messages, EveryChangeOfTheStatusHasItsTick) {
   const Stage stage;

@@ -6,7 +6,8 @@ import { secret } from "./secret.js";
 import * as wire from "./wire.js";
 
 const READ = { scene: wire.scene, part: wire.shape, parts: wire.shapes, frame: wire.frame,
-               timing: wire.timing, operator: wire.operator, refused: wire.refused };
+               depth: wire.depth, timing: wire.timing, operator: wire.operator,
+               refused: wire.refused };
 const LONGEST_WAIT_MS = 5000;
 const NO_SECRET = 4401;
 const TOO_MANY_SECRETS = 4429;

@@ -9,6 +9,7 @@ import { follow, startCapture } from "./capture.js";
 import { Charts } from "./charts.js";
 import { Connection } from "./connection.js";
 import { Controls } from "./controls.js";
+import { Depth } from "./depth.js";
 import { Drag } from "./drag.js";
 import { startDrawer } from "./drawer.js";
 import { Events } from "./events.js";
@@ -76,6 +77,7 @@ const trail = new Trail(stage);
 const signals = new SignalHistory();
 const charts = new Charts(signals);
 const joints = new Joints();
+const depth = new Depth();
 const inspector = new Inspector(parts);
 const tree = new Tree(parts, inspect);
 const measure = new Measure(stage, labels);
@@ -174,6 +176,7 @@ connection.on("scene", (scene) => {
   inspect(null);
   tree.scene(bodies);
   events.clear();
+  depth.scene();
   armShown();
   strips[1].zone = 1000 * Math.max(0, ...scene.parts.map((part) => part.range_m));
   gaps.scene(scene);
@@ -202,6 +205,7 @@ connection.on("frame", (frame) => {
 
 connection.on("part", (shape) => parts.reshape([shape]));
 connection.on("parts", (shapes) => parts.reshape(shapes));
+connection.on("depth", (image) => depth.show(image));
 connection.on("timing", (timing) => (state.timing = timing));
 connection.on("operator", (operator) => {
   state.operator = operator;

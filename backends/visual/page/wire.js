@@ -153,6 +153,13 @@ export function frame(x) {
   };
 }
 
+// An image, or null where it is not whole.
+export function depth({ camera, width, height, mm }) {
+  const count = Number.isInteger(width) && Number.isInteger(height) ? width * height : -1;
+  if (!(count > 0) || !Array.isArray(mm) || mm.length !== count) return null;
+  return { camera: text(camera), width, height, mm: numbers(mm) };
+}
+
 function quantiles(x) {
   const { p50, p99, max } = object(x);
   return { p50: number(p50), p99: number(p99), max: number(max) };

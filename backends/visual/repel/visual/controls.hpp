@@ -9,6 +9,7 @@
 #include <mutex>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <repel/base/mailbox.hpp>
 #include <repel/base/spatial.hpp>
@@ -75,6 +76,32 @@ class NewShapes {
   std::map<std::int32_t, Shape> shapes_;
 };
 
+/// The last image of a depth camera, for displays.
+struct DepthView {
+  int width = 0;                     ///< [px]
+  int height = 0;                    ///< [px]
+  std::vector<std::uint16_t> depth;  ///< [mm] row by row; 0: nothing was measured
+};
+
+/// The last images of cameras. Not for the loop.
+class NewDepths {
+ public:
+  /// Takes a lock and allocates.
+  void note(const std::string& camera, DepthView view) {
+    const std::lock_guard lock(mutex_);
+    views_.insert_or_assign(camera, std::move(view));
+  }
+  /// Those noted since the last call, by the name of the camera.
+  [[nodiscard]] std::map<std::string, DepthView> take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(views_, {});
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, DepthView> views_;
+};
+
 /// Lock-free interface between the loop, reading, and one other thread, writing.
 struct Controls {
   Mailbox<DriverInput> input{DriverInput{}};  ///< each post also tells that the driver is alive
@@ -88,6 +115,7 @@ struct Controls {
   std::string no_conduct;          ///< why none can pause, step, restart or change parts
   ChangesPort changes;             ///< not for the loop
   NewShapes shapes;                ///< likewise
+  NewDepths depths;                ///< likewise
   std::atomic<double> seek{-1.0};  ///< [s] replay: time to jump to; negative: none
   std::atomic<double> speed{1.0};  ///< replay: factor on real time
 };

@@ -17,6 +17,7 @@
 #include <repel/geometry/triangle_mesh.hpp>
 #include <repel/loop/tap.hpp>
 #include <repel/visual/arm_info.hpp>
+#include <repel/visual/controls.hpp>
 
 namespace repel::visual {
 
@@ -83,6 +84,9 @@ struct SceneInfo {
 
 /// `parts`: the same of several, by their indices.
 [[nodiscard]] std::string parts_message(const std::map<std::int32_t, Shape>& shapes);
+
+/// `depth`: the last image of a camera.
+[[nodiscard]] std::string depth_message(const std::string& camera, const DepthView& view);
 
 /// `frame`: one picture, and a few values of every tick since the last.
 [[nodiscard]] std::string frame_message(const SceneInfo& info, const World& world,

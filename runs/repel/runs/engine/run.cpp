@@ -145,10 +145,17 @@ std::unique_ptr<CameraFeeds> make_cameras(PreparedRun& prepared, const Attachmen
       if (beside != nullptr) beside->shapes.note({part, shape});
     };
   }
-  if (beside != nullptr) {
-    listeners.on_image = [beside](const CameraImage& image) {
-      beside->pictures.note(depth_picture(image.index, image.time, image.camera.width,
-                                          image.camera.height, image.depth));
+  if (controls != nullptr || beside != nullptr) {
+    listeners.on_image = [controls, beside,
+                          &cameras = prepared.scene.cameras](const CameraImage& image) {
+      DepthPicture picture = depth_picture(image.index, image.time, image.camera.width,
+                                           image.camera.height, image.depth);
+      if (controls != nullptr) {
+        const std::string& name = cameras[image.index].name;
+        controls->depths.note(name.empty() ? "camera" : name,
+                              {picture.width, picture.height, picture.depth});
+      }
+      if (beside != nullptr) beside->pictures.note(std::move(picture));
     };
   }
   return std::make_unique<CameraFeeds>(prepared.scene, prepared.robots, prepared.cell, in_step,
