@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
 API = ROOT / "build/site_work/api"  # the pages of Doxygen
 PAGES = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "docs/**/*.md",
          "scenes/**/*.md", "bench/**/*.md"]
-ASSETS = {".svg", ".png", ".jpg"}
+ASSETS = {".svg", ".png", ".webp", ".jpg"}
 # How a file is shown that is neither a page, nor a picture, nor a header of the reference.
 LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".py": "python", ".sh": "sh", ".yaml": "yaml",
              ".yml": "yaml", ".awk": "awk", ".json": "json", ".cmake": "cmake"}
