@@ -110,7 +110,7 @@ def obj(bodies):
         corners = [vertices.setdefault(row, len(vertices) + 1) for row in rows]
         if len(set(corners)) == 3:
             faces.append("f {} {} {}".format(*corners))
-    return "\n".join(["# SPDX-License-Identifier: BSD-3-Clause", *vertices, *faces, ""])
+    return "\n".join(["# SPDX-" "License-Identifier: BSD-3-Clause", *vertices, *faces, ""])
 
 
 # --- The robots: the bodies of each file.
