@@ -225,6 +225,18 @@ class SharedProgram(InBrowser):
             live.stop_program(cls.program)
 
 
+class SharedReplay(SharedProgram):
+    """The recording of six seconds of the default scene."""
+
+    @classmethod
+    def start(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        recording = os.path.join(folder.name, "recording.mcap")
+        live.run(live.SCENE, "--seconds", "6", "--log", recording)
+        return live.listening("replay", recording)
+
+
 class FromTheBeginning(SharedProgram):
     """Each test finds the run paused at its beginning."""
 

@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The page as an instrument: bodies, joints, charts, events, the tape, links, the tour."""
 
-import os
-import tempfile
-
 import live
-from cases import FromTheBeginning, OwnProgram, SharedProgram
+from cases import FromTheBeginning, OwnProgram, SharedReplay
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 
@@ -178,15 +175,7 @@ class Meshes(OwnProgram):
         self.assertTrue(any(int(row.text) > 1 for row in rows), "one body of several parts")
 
 
-class ReplayedEvents(SharedProgram):
-    @classmethod
-    def start(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        recording = os.path.join(folder.name, "recording.mcap")
-        live.run(live.SCENE, "--seconds", "6", "--log", recording)
-        return live.listening("replay", recording)
-
+class ReplayedEvents(SharedReplay):
     def test_a_click_on_an_event_goes_there(self):
         page = self.open(self.url)
         if page.state()["mode"] != "replay":

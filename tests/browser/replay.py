@@ -1,23 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A recording that is played."""
 
-import os
-import tempfile
 import time
 
-import live
-from cases import SharedProgram
+from cases import SharedReplay
 
 
-class Replay(SharedProgram):
-    @classmethod
-    def start(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        recording = os.path.join(folder.name, "recording.mcap")
-        live.run(live.SCENE, "--seconds", "6", "--log", recording)
-        return live.listening("replay", recording)
-
+class Replay(SharedReplay):
     def setUp(self):
         super().setUp()
         if self.open(self.url).state()["mode"] != "replay":
