@@ -57,23 +57,25 @@ class ChangesPort {
   WorldChanges* changes_ = nullptr;
 };
 
-/// The shapes that parts have got while a run lasts, for displays. Not for the loop.
-class NewShapes {
+/// What is new, by key, for a display that asks now and then: the last value of each. Not for the
+/// loop.
+template <class Key, class Value>
+class Newest {
  public:
-  /// The shape that a part has from now on. Takes a lock and allocates.
-  void note(PartId part, const Shape& shape) {
+  /// Takes a lock and allocates.
+  void note(const Key& key, Value value) {
     const std::lock_guard lock(mutex_);
-    shapes_.insert_or_assign(part.index, shape);
+    values_.insert_or_assign(key, std::move(value));
   }
-  /// Those noted since the last call, by the index of the part.
-  [[nodiscard]] std::map<std::int32_t, Shape> take() {
+  /// Those noted since the last call.
+  [[nodiscard]] std::map<Key, Value> take() {
     const std::lock_guard lock(mutex_);
-    return std::exchange(shapes_, {});
+    return std::exchange(values_, {});
   }
 
  private:
   std::mutex mutex_;
-  std::map<std::int32_t, Shape> shapes_;
+  std::map<Key, Value> values_;
 };
 
 /// The last image of a depth camera, for displays.
@@ -83,41 +85,22 @@ struct DepthView {
   std::vector<std::uint16_t> depth;  ///< [mm] row by row; 0: nothing was measured
 };
 
-/// The last images of cameras. Not for the loop.
-class NewDepths {
- public:
-  /// Takes a lock and allocates.
-  void note(const std::string& camera, DepthView view) {
-    const std::lock_guard lock(mutex_);
-    views_.insert_or_assign(camera, std::move(view));
-  }
-  /// Those noted since the last call, by the name of the camera.
-  [[nodiscard]] std::map<std::string, DepthView> take() {
-    const std::lock_guard lock(mutex_);
-    return std::exchange(views_, {});
-  }
-
- private:
-  std::mutex mutex_;
-  std::map<std::string, DepthView> views_;
-};
-
 /// Lock-free interface between the loop, reading, and one other thread, writing.
 struct Controls {
   Mailbox<DriverInput> input{DriverInput{}};  ///< each post also tells that the driver is alive
   std::atomic<bool> paused{false};            ///< the loop waits, but for single steps
   std::atomic<std::int64_t> steps{0};         ///< single ticks to run while paused
   std::atomic<bool> restart{false};           ///< end this run and start another
-  bool may_restart = true;         ///< false while a log is written; constant after set-up
-  bool over_device = false;        ///< a page may override a device; constant after set-up
-  bool may_change = true;          ///< false while a recording is written; likewise
-  std::string no_driving;          ///< why no page can drive; empty: it may; likewise
-  std::string no_conduct;          ///< why none can pause, step, restart or change parts
-  ChangesPort changes;             ///< not for the loop
-  NewShapes shapes;                ///< likewise
-  NewDepths depths;                ///< likewise
-  std::atomic<double> seek{-1.0};  ///< [s] replay: time to jump to; negative: none
-  std::atomic<double> speed{1.0};  ///< replay: factor on real time
+  bool may_restart = true;                ///< false while a log is written; constant after set-up
+  bool over_device = false;               ///< a page may override a device; constant after set-up
+  bool may_change = true;                 ///< false while a recording is written; likewise
+  std::string no_driving;                 ///< why no page can drive; empty: it may; likewise
+  std::string no_conduct;                 ///< why none can pause, step, restart or change parts
+  ChangesPort changes;                    ///< not for the loop
+  Newest<std::int32_t, Shape> shapes;     ///< that parts have got, by PartId::index
+  Newest<std::string, DepthView> depths;  ///< by the name of the camera
+  std::atomic<double> seek{-1.0};         ///< [s] replay: time to jump to; negative: none
+  std::atomic<double> speed{1.0};         ///< replay: factor on real time
 };
 
 }  // namespace repel::visual

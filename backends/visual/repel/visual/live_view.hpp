@@ -91,7 +91,7 @@ class LiveView {
   }
 
   /// A part has another shape from now on, for the pages. Takes a lock: not for the tick.
-  void reshape(PartId part, const Shape& shape) { controls_.shapes.note(part, shape); }
+  void reshape(PartId part, const Shape& shape) { controls_.shapes.note(part.index, shape); }
 
   /// Where the page is: "http://127.0.0.1:8448/".
   [[nodiscard]] const std::string& url() const noexcept { return served_.url(); }

@@ -141,7 +141,7 @@ std::unique_ptr<CameraFeeds> make_cameras(PreparedRun& prepared, const Attachmen
   CameraListeners listeners;
   if (controls != nullptr || beside != nullptr) {
     listeners.on_add = [controls, beside](PartId part, const Shape& shape) {
-      if (controls != nullptr) controls->shapes.note(part, shape);
+      if (controls != nullptr) controls->shapes.note(part.index, shape);
       if (beside != nullptr) beside->shapes.note({part, shape});
     };
   }
