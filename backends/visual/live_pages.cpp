@@ -166,9 +166,9 @@ std::string LivePages::conduct(const std::string& type, const Json& message) {
     controls_.paused = type == "pause";
   } else if (type == "step") {
     const auto ticks = number(message, "ticks", 10000.0);
-    if (!ticks || *ticks < 1.0) return out_of_range;
+    if (!ticks || *ticks < 1.0 || *ticks != std::floor(*ticks)) return out_of_range;
     controls_.paused = true;
-    controls_.steps += std::llround(*ticks);
+    controls_.steps += static_cast<std::int64_t>(*ticks);
   } else if (type == "restart" && !controls_.may_restart) {
     return controls_.no_driving.empty() ? "a log is being written, which begins once"
                                         : controls_.no_driving;

@@ -45,7 +45,11 @@ class Instrument(FromTheBeginning):
         drawn = self.page.draws()["drawn"]["parts"]
         self.tab("bodies")
         everything = len(self.rows("tree", "li"))
-        self.page.choose("tree-find", "table")
+        self.element("tree-find").send_keys("table")  # of which a, b and t are keys of the page
+        self.assertEqual(self.element("tree-find").get_property("value"), "table")
+        state = self.page.state()
+        self.assertFalse(state["running"])
+        self.assertFalse(state["operator"]["you"], "what is written drives nothing")
         (row,) = self.rows("tree", "li")
         row.find_element(By.TAG_NAME, "input").click()
         self.page.until(lambda s: s["drawn"]["parts"] == drawn - 1, "the table is not drawn")
@@ -58,6 +62,17 @@ class Instrument(FromTheBeginning):
         self.assertEqual(len(self.rows("tree", "li")), everything)
         self.page.click("tree-all")
         self.page.until(lambda s: s["drawn"]["parts"] == drawn, "and is drawn again")
+
+    def test_a_link_is_hidden_with_its_looks(self):
+        self.page.step_to(0.1)
+        drawn = self.page.draws()["drawn"]["visuals"]
+        self.tab("bodies")
+        self.page.choose("tree-find", "link_2")
+        (row,) = self.rows("tree", "li")
+        row.find_element(By.TAG_NAME, "input").click()
+        self.page.until(lambda s: s["drawn"]["visuals"] == drawn - 1, "it is not drawn")
+        self.page.click("tree-all")
+        self.page.until(lambda s: s["drawn"]["visuals"] == drawn, "and is drawn again")
 
     def test_joints_are_shown_between_their_ends(self):
         self.page.step_to(1)
@@ -85,10 +100,9 @@ class Instrument(FromTheBeginning):
         held = self.page.until(lambda s: s["charts"]["paused"], "it is held")["charts"]["points"]
         self.page.steps(200)
         self.assertEqual(self.page.state()["charts"]["points"], held)
-        saved = self.browser.execute_async_script("""
-            const done = arguments[0];
-            URL.createObjectURL = (blob) => (blob.text().then(done), "#");
-            document.querySelectorAll("#charts button")[7].click();""")
+        self.page.click("chart-add")
+        self.assertTrue(self.page.state()["charts"]["paused"], "one that comes is held, too")
+        saved = self.page.saved("#charts button", "CSV", 2)
         head, *rows = saved.splitlines()
         self.assertEqual(head, "time_s,tau2_nm")
         self.assertGreater(len(rows), 2)
@@ -127,6 +141,12 @@ class Instrument(FromTheBeginning):
         self.browser.execute_script("repel.look([2, -1, 1], [0.2, 0, 0.4])")
         self.tab("charts")
         self.page.until(lambda s: s["charts"]["names"], "charts are there")
+        self.tab("bodies")
+        table, box = (next(row for row in self.rows("tree", "li") if row.text == name)
+                      for name in ("table", "box"))
+        table.find_element(By.TAG_NAME, "button").click()
+        box.find_element(By.TAG_NAME, "input").click()
+        self.tab("charts")
         self.page.click("share")
         live.until(lambda: "camera" in self.browser.current_url, "it is in the address",
                    lambda: self.browser.current_url)
@@ -136,6 +156,10 @@ class Instrument(FromTheBeginning):
         state = page.until(lambda s: abs(s["camera"]["position"][0] - 2) < 0.01, "the same camera")
         self.assertAlmostEqual(state["camera"]["position"][1], -1, delta=0.01)
         self.assertTrue(page.shown("pane-charts"))
+        self.assertEqual(state["inspected"], "table")
+        page.click("tab-bodies")
+        (box,) = (row for row in self.rows("tree", "li") if row.text == "box")
+        self.assertFalse(box.find_element(By.TAG_NAME, "input").is_selected())
 
     def test_late_ticks_are_not_called_ok(self):
         self.browser.execute_async_script("""
@@ -185,8 +209,26 @@ class ReplayedEvents(SharedReplay):
         page.until(lambda s: s["time_s"] > 3 and s["events"] > 1, "something has happened")
         first = self.element("events").find_elements(By.TAG_NAME, "button")[-1]
         time = float(first.text.split(" s")[0])
+        events = page.state()["events"]
         self.browser.execute_script("arguments[0].click()", first)
         page.until(lambda s: not s["running"] and abs(s["time_s"] - time) < 0.02, "it is there")
+        self.assertEqual(page.state()["events"], events, "one can go to another")
+
+    def test_a_jump_ahead_leaves_a_gap_in_the_charts(self):
+        """What every tick told on the way there is of its own time, not of where one arrives."""
+        page = self.open(self.url)
+        if page.state()["mode"] != "replay":
+            self.skipTest("this server runs a scene")
+        page.click("tab-charts")
+        for time in (0.1, 4.2):
+            page.say("pause")
+            page.say("seek", time_s=time)
+            page.until(lambda s, at=time: abs(s["time_s"] - at) < 0.02, f"it is at {time} s")
+        force = page.until(lambda s: s["force"], "there is one")["force"]
+        saved = page.saved("#charts button", "CSV")
+        rows = [line.split(",") for line in saved.splitlines()[1:]]
+        self.assertAlmostEqual(float(rows[-1][0]), 4.2, delta=0.02)
+        self.assertAlmostEqual(float(rows[-1][1]), sum(x * x for x in force) ** 0.5, delta=20.0)
 
 
 class Camera(OwnProgram):

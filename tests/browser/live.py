@@ -165,6 +165,14 @@ class Page:
             "input[input.type === 'checkbox' ? 'checked' : 'value'] = value;"
             "input.dispatchEvent(new Event(event));", name, value, event)
 
+    def saved(self, buttons, text, k=0):
+        """The text of the file that the k-th of these buttons with that text saves."""
+        return self.browser.execute_async_script(
+            "const [buttons, text, k, done] = arguments;"
+            "URL.createObjectURL = (blob) => (blob.text().then(done), '#');"
+            "[...document.querySelectorAll(buttons)].filter((each) => each.textContent === text)[k]"
+            ".click();", buttons, text, k)
+
     def draws(self, count=2):
         """Waits for so many more pictures: the last one shows what has been done before."""
         before = self.state()["framesRendered"]

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What can be taken away from the page: a file, a picture of the scene, and a link that opens the
-// page with the same camera, tab and charts.
+// page with the same camera, arm, body, hidden bodies, tab and charts.
 
 import { toast } from "./messages.js";
 import { state } from "./state.js";
 import { showTab, shownTab } from "./tabs.js";
 import { at, finite } from "./words.js";
+
+const FAR = 1e6;  // [m] no camera is farther
 
 export function save(blob, name) {
   const link = document.createElement("a");
@@ -19,16 +21,18 @@ export function save(blob, name) {
 export function asked(hash = location.hash) {
   const words = new URLSearchParams(hash.slice(1));
   const numbers = (name, count) => {
-    const all = (words.get(name) ?? "").split(",").map(Number);
-    return all.length === count && all.every(finite) ? all : null;
+    const all = (words.get(name) ?? "").split(",").map((word) => (word ? Number(word) : NaN));
+    return all.length === count && all.every((x) => Math.abs(x) < FAR) ? all : null;
   };
   const charts = words.get("charts");
   return { time: /^[0-9.]+$/.test(words.get("t") ?? "") ? Number(words.get("t")) : null,
-           camera: numbers("camera", 6), tab: words.get("tab"),
+           camera: numbers("camera", 6), tab: words.get("tab"), arm: numbers("arm", 1)?.[0],
+           body: words.get("body"), hidden: words.getAll("hidden"),
            charts: charts ? charts.split(";").map((some) => some.split(",")) : null };
 }
 
-export function startCapture({ stage, cameras, charts }) {
+// `looked()`: the names of the body that is looked at and of those that are hidden.
+export function startCapture({ stage, cameras, charts, looked }) {
   at("screenshot").addEventListener("click", () => {
     stage.picture((blob) => save(blob, `${state.scene?.name ?? "repel"}.png`));
   });
@@ -38,24 +42,30 @@ export function startCapture({ stage, cameras, charts }) {
       words.set("t", state.frame.time_s.toFixed(3));
     }
     words.set("camera", cameras.place().map((x) => Number(x.toFixed(4))).join(","));
+    const { body, hidden } = looked();
+    if (state.arm > 0) words.set("arm", state.arm);
+    if (body) words.set("body", body);
+    for (const name of hidden) words.append("hidden", name);
     words.set("tab", shownTab());
     if (shownTab() === "charts") {
       words.set("charts", charts.names.map((some) => some.join(",")).join(";"));
     }
-    history.replaceState(null, "", `#${decodeURIComponent(words.toString())}`);
+    const link = words.toString().replace(/%2C/g, ",").replace(/%3B/g, ";");
+    history.replaceState(null, "", `#${link}`);
     try {
       await navigator.clipboard.writeText(location.href);
-      toast("The link is copied: it has this camera, tab and charts");
+      toast("The link is copied: it has what is seen now");
     } catch {
-      toast("The link is in the address bar: it has this camera, tab and charts");
+      toast("The link is in the address bar: it has what is seen now");
     }
   });
 }
 
-// Once the scene stands. What is no key of the page is left out.
-export function follow({ cameras, charts }) {
-  const { camera, tab, charts: names } = asked();
+// Once the scene stands. What is no key of the page is left out. `show({ arm, body, hidden })`.
+export function follow({ cameras, charts, show }) {
+  const { camera, tab, charts: names, ...others } = asked();
   if (camera) cameras.look(camera.slice(0, 3), camera.slice(3));
+  show(others);
   if (tab) showTab(tab);
   if (names) charts.arm(names);
 }

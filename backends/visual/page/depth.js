@@ -8,16 +8,31 @@ const NEAR = [224, 138, 0];
 const FAR = [20, 60, 120];
 
 export class Depth {
-  #camera = null;  // the one that is shown: the first that was told
+  #images = new Map();  // the last one by camera
+
+  constructor() {
+    at("depth-camera").addEventListener("change", () => this.#draw());
+  }
 
   scene() {
-    this.#camera = null;
+    this.#images.clear();
+    at("depth-camera").replaceChildren();
     at("depth-card").hidden = true;
   }
 
   show(image) {
-    if (!image || (this.#camera ?? image.camera) !== image.camera) return;
-    this.#camera = image.camera;
+    if (!image) return;
+    const { camera } = image;
+    if (!this.#images.has(camera)) {
+      at("depth-camera").append(new Option(camera, camera));
+      at("depth-camera").hidden = this.#images.size === 0;
+    }
+    this.#images.set(camera, image);
+    if (camera === at("depth-camera").value) this.#draw();
+  }
+
+  #draw() {
+    const image = this.#images.get(at("depth-camera").value);
     const seen = image.mm.filter((mm) => mm > 0 && mm < 65535);
     const low = seen.reduce((a, b) => Math.min(a, b), Infinity);
     const high = seen.reduce((a, b) => Math.max(a, b), 0);

@@ -34,6 +34,9 @@ function open(yes) {
   at("panel-open").setAttribute("aria-expanded", String(yes));
 }
 
+// Shows the readings where they are folded away.
+export const showReadings = () => FOLDED.matches && open(true);
+
 export const drawerOpen = () => at("panel-open").getAttribute("aria-expanded") === "true";
 
 export function startDrawer() {

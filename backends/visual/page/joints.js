@@ -10,13 +10,15 @@ import { at, brief, finite, fixed, mm, write } from "./words.js";
 const DEGREES = 180 / Math.PI;
 const NEAR_END = 0.9;  // share of the greatest from which a bar warns
 
-function track(row, title) {
+// A bar, its number, and `ends`: what it may be.
+function track(row, ends) {
   const cell = row.insertCell();
-  cell.title = title;
   const bar = cell.appendChild(document.createElement("div"));
   bar.className = "joint-track";
   const fill = bar.appendChild(document.createElement("i"));
-  return { fill, value: cell.appendChild(document.createElement("output")) };
+  const value = cell.appendChild(document.createElement("output"));
+  cell.appendChild(document.createElement("small")).textContent = ends;
+  return { fill, value };
 }
 
 export class Joints {
@@ -35,7 +37,7 @@ export class Joints {
       name.textContent = name.title = limit.name || `joint ${k + 1}`;
       const say = (x) => (finite(x) ? turns ? `${fixed(DEGREES * x, 0)}\u00b0` : `${mm(x, 0)} mm`
                                     : "\u221e");
-      const most = (x, unit) => (finite(x) ? `at most ${brief(x)} ${unit}` : "no limit is known");
+      const most = (x, unit) => (finite(x) ? `of ${brief(x)} ${unit}` : unit);
       return { limit, turns, position: track(row, `${say(limit.lower)} to ${say(limit.upper)}`),
                rate: track(row, most(limit.rate, turns ? "rad/s" : "m/s")),
                effort: track(row, most(limit.effort, turns ? "N m" : "N")) };

@@ -40,16 +40,17 @@ export class Labels {
         if (!aside && label.y - above.y < HEIGHT) label.y = above.y + HEIGHT;
       }
     });
+    const { clientWidth: width } = this.stage.canvas;
     for (const [of, { span }] of this.#shown) {
       if (this.#wanted.some((label) => label.of === of)) continue;
       span.remove();
       this.#shown.delete(of);
     }
-    for (const label of this.#wanted) this.#write(label, now);
+    for (const label of this.#wanted) this.#write(label, now, width);
   }
 
   // Only what changed: the browser paints again for everything that is set.
-  #write({ x, y, of, text, tint }, now) {
+  #write({ x, y, of, text, tint }, now, width) {
     let label = this.#shown.get(of);
     if (!label) {
       label = { span: this.holder.appendChild(document.createElement("span")), at: -Infinity };
@@ -58,10 +59,12 @@ export class Labels {
     const { span } = label;
     if (label.text !== text && now - label.at >= READ_MS) {
       span.textContent = label.text = text;
+      label.width = span.offsetWidth;
       label.at = now;
     }
     if (label.tint !== tint) span.style.setProperty("--c", `var(--${(label.tint = tint)})`);
-    const place = `translate(${Math.round(x)}px, ${Math.round(y)}px)`;
+    const left = Math.max(0, Math.min(x, width - label.width));
+    const place = `translate(${Math.round(left)}px, ${Math.round(y)}px)`;
     if (label.place !== place) span.style.transform = label.place = place;
   }
 }

@@ -11,7 +11,7 @@ import { Connection } from "./connection.js";
 import { Controls } from "./controls.js";
 import { Depth } from "./depth.js";
 import { Drag } from "./drag.js";
-import { startDrawer } from "./drawer.js";
+import { showReadings, startDrawer } from "./drawer.js";
 import { Events } from "./events.js";
 import { Gamepad } from "./gamepad.js";
 import { Gaps } from "./gaps.js";
@@ -78,8 +78,13 @@ const signals = new SignalHistory();
 const charts = new Charts(signals);
 const joints = new Joints();
 const depth = new Depth();
-const inspector = new Inspector(parts);
-const tree = new Tree(parts, inspect);
+const inspector = new Inspector(parts, () => inspect(null));
+const tree = new Tree({
+  choose: (body) => (measure.on ? measure.put(parts.centreOf(body.parts)) : inspect(body)),
+  highlight: (body) => parts.highlight(body?.parts ?? []),
+  isHidden,
+  hide,
+});
 const measure = new Measure(stage, labels);
 const readouts = new Readouts((pair, range) => marks.colourOf(pair, range), () => {
   hand.arm();
@@ -155,9 +160,28 @@ function inspect(body) {
   panelsDue = true;
 }
 
+// What a link asks for.
+function show({ arm, body, hidden }) {
+  if (arm !== undefined) readouts.choose(arm);
+  hide(bodies.filter(({ name }) => hidden.includes(name)), true);
+  tree.scene(bodies);
+  inspect(bodies.find(({ name }) => name === body) ?? null);
+}
+
+function isHidden(body) {
+  return body.parts.every((k) => parts.isHidden(k));
+}
+
+// Hides bodies, or shows them again.
+function hide(some, yes) {
+  parts.hide(some.flatMap((body) => body.parts), yes);
+  visuals.show();
+}
+
 // What is of the arm whose numbers are shown.
 function armShown() {
   signals.clear();
+  history.clear();
   joints.arm();
   charts.arm();
 }
@@ -193,13 +217,12 @@ connection.on("frame", (frame) => {
   if (frame.tick !== null && frame.tick < state.frame?.tick) {
     trail.clear();
     history.clear();
-    events.clear();
   }
   state.frame = frame;
   signals.add(frame);
   events.add(frame);
   controls.frame();
-  history.add(frame.recent);
+  history.add(frame);
   fresh = true;
 });
 
@@ -241,7 +264,7 @@ function move(frame) {
     cameras.frame(() => [...parts.corners(), ...visuals.corners()],
                   new Sphere().setFromPoints(tool).radius || radius / 4);
     showMenu.scale();
-    follow({ cameras, charts });
+    follow({ cameras, charts, show });
   }
   near.clear();
   pushing.clear();
@@ -332,7 +355,8 @@ function showOrHide() {
 function onKey(event) {
   if (event.ctrlKey || event.altKey || event.metaKey || at("help").open) return;
   const { tagName, type } = event.target;
-  if (tagName === "SELECT" || type === "password") return;
+  const writes = tagName === "INPUT" && !["checkbox", "range"].includes(type);
+  if (tagName === "SELECT" || writes) return;
   const presses = tagName === "BUTTON" || tagName === "SUMMARY" || type === "checkbox";
   if (event.key === " " && presses) return;  // it presses what has the focus
   if (event.key === "Home" && type === "range") return;
@@ -353,11 +377,15 @@ function handle(event) {
 }
 
 startTabs(() => (panelsDue = true));
-startCapture({ stage, cameras, charts });
+startCapture({ stage, cameras, charts, looked: () => ({
+  body: inspector.body?.name, hidden: bodies.filter(isHidden).map(({ name }) => name),
+}) });
 startPicking(stage, parts, visuals, ({ part, body, point }) => {
   if (measure.on) return measure.put(point);
-  inspect(bodies.find((each) => (part === null ? each.body === body && each.kind !== "obstacle"
-                                               : each.parts.includes(part))) ?? null);
+  const met = bodies.find((each) => (part === null ? each.body === body && each.kind !== "obstacle"
+                                                   : each.parts.includes(part)));
+  inspect(met ?? null);
+  if (met) showReadings();
 });
 const showMenu = startShowMenu({ stage, parts, visuals, near, dress,
                                  changed: () => (panelsDue = true) });

@@ -4,6 +4,7 @@
 
 import { Color, Vector3 } from "./vendor/three.min.js";
 import { Beads, Rods } from "./batches.js";
+import { toast } from "./messages.js";
 import { colour, onTheme } from "./theme.js";
 import { at, mm } from "./words.js";
 
@@ -37,7 +38,7 @@ export class Measure {
 
   // A third click begins again.
   put(point) {
-    if (!point) return;
+    if (!point) return toast("Nothing is there to measure from");
     if (this.#ends.length === 2) this.#ends.length = 0;
     this.#ends.push(point.clone());
     this.stage.invalidate();

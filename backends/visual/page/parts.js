@@ -238,14 +238,15 @@ export class Parts {
 
   // Corners of boxes around all parts where they are now, or around those of one body.
   corners(body = null) {
-    const corners = [];
+    return this.#cornersOf(this.parts.filter((part) => [null, part.body].includes(body)));
+  }
+
+  #cornersOf(parts) {
     this.stage.scene.updateMatrixWorld();
-    for (const part of this.parts) {
-      const { geometry, matrixWorld } = part.solid;
-      if (geometry.attributes.position.count === 0 || ![null, part.body].includes(body)) continue;
-      corners.push(...cornersOf(geometry).map((corner) => corner.applyMatrix4(matrixWorld)));
-    }
-    return corners;
+    return parts.flatMap(({ solid: { geometry, matrixWorld } }) => {
+      if (geometry.attributes.position.count === 0) return [];
+      return cornersOf(geometry).map((corner) => corner.applyMatrix4(matrixWorld));
+    });
   }
 
   // A pale copy of what moves with a body, to show where it is wanted.
@@ -272,6 +273,11 @@ export class Parts {
     }
     for (const body of new Set(parts.map((k) => this.parts[k].body))) this.#outline(body);
     this.stage.invalidate();
+  }
+
+  // Not left out for want of room.
+  isDrawn(k) {
+    return !this.#left.has(k);
   }
 
   isHidden(k) {
@@ -317,6 +323,14 @@ export class Parts {
       whole = whole?.union(box) ?? box;
     }
     return whole === null || whole.isEmpty() ? [0, 0, 0] : whole.getSize(new Vector3()).toArray();
+  }
+
+  // The middle of the corners of boxes around parts, in the world; null: none of them is drawn.
+  centreOf(parts) {
+    const corners = this.#cornersOf(parts.map((k) => this.parts[k]));
+    if (corners.length === 0) return null;
+    return corners.reduce((sum, corner) => sum.add(corner), new Vector3())
+      .divideScalar(corners.length);
   }
 
   // Where a part is in the world, as a pose of the wire.

@@ -40,6 +40,9 @@ export class Readouts {
     if (ranges.length > 0) write(at("ramp-text"), `${mm(Math.max(...ranges), 0)} to 0 mm`);
     const walls = scene.parts.filter((part) => part.group === "obstacle");
     at("wall-key").hidden = walls.every((part) => part.passable || part.color);
+    for (const key of ["ramp-key", "overlap-key", "push-key", "total-key"]) {
+      at(key).hidden = scene.pairs.length === 0;
+    }
     at("membrane-key").hidden = !walls.some((part) => part.passable);
     at("stale-key").hidden = true;
     this.#arms(scene.arms);
@@ -49,12 +52,17 @@ export class Readouts {
     state.arm = 0;
     at("arm-row").hidden = arms.length < 2;
     at("arm").replaceChildren(...arms.map((arm, k) => new Option(arm.name || `arm ${k + 1}`, k)));
-    at("arm").onchange = () => {
-      state.arm = Number(at("arm").value);
-      this.#modules();
-      this.armChosen();
-    };
+    at("arm").onchange = () => this.choose(Number(at("arm").value));
     this.#modules();
+  }
+
+  // Shows another arm.
+  choose(arm) {
+    if (!state.scene.arms[arm] || arm === state.arm) return;
+    state.arm = arm;
+    at("arm").value = arm;
+    this.#modules();
+    this.armChosen();
   }
 
   #modules() {
@@ -86,7 +94,7 @@ export class Readouts {
   }
 
   #showStatus(frame, now) {
-    const misses = state.timing?.misses ?? 0;
+    const misses = state.scene?.mode === "live" ? state.timing?.misses ?? 0 : 0;
     if (misses > this.#misses) this.#missedAt = now;
     this.#misses = misses;
     const some = frame.status.length > 0;

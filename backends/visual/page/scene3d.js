@@ -206,7 +206,13 @@ export class Stage {
   picture(done) {
     this.#refine(LEVELS[0]);
     this.renderer.render(this.scene, this.camera);
-    this.canvas.toBlob(done);
+    const picture = document.createElement("canvas");
+    Object.assign(picture, { width: this.canvas.width, height: this.canvas.height });
+    const context = picture.getContext("2d");
+    context.fillStyle = colour("sky");  // which the page has behind what is drawn
+    context.fillRect(0, 0, picture.width, picture.height);
+    context.drawImage(this.canvas, 0, 0);
+    picture.toBlob(done);
     this.#refine();
   }
 

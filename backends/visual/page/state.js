@@ -2,6 +2,7 @@
 // What the program said last, and the last seconds of every tick.
 
 import { settings } from "./settings.js";
+import { norm } from "./words.js";
 
 const SECONDS = 10;
 const MOST_TICKS = 200000;
@@ -46,14 +47,16 @@ export class History {
   }
 
   // NaN stands for nothing near, and for what is missing.
-  add(recent) {
+  add(frame) {
+    const { recent } = frame;
+    const forces = forcesOf(frame);
     const ticks = recent.tick;
     for (let i = 0; i < ticks.length; ++i) {
       if (ticks[i] === null) continue;
       if (ticks[i] <= this.#last) this.clear();  // restarted, or sought back
       this.#last = ticks[i];
       this.time[this.#next] = ticks[i] / this.rate;
-      this.force[this.#next] = recent.force_n[i] ?? NaN;
+      this.force[this.#next] = forces[i] ?? NaN;
       this.nearest[this.#next] = recent.nearest_m[i] ?? NaN;
       this.#next = (this.#next + 1) % this.#capacity;
       this.#count = Math.min(this.#count + 1, this.#capacity);
@@ -91,6 +94,14 @@ export function forceScale() {
   return settings.forceScale || 0.001 * 10 ** Math.max(0, Math.round(Math.log10(state.radius)));
 }
 
+// By tick since the last picture: the force on the tool of the arm that is shown [N]. Of all but
+// the first arm only pictures tell it.
+export function forcesOf({ recent, arms }) {
+  if (state.arm === 0) return recent.force_n;
+  const force = arms[state.arm]?.force;
+  return recent.tick.map(() => (force ? norm(force) : null));
+}
+
 export const thisArm = () => state.scene?.arms[state.arm] ?? null;
 export const thisArmNow = () => state.frame?.arms[state.arm] ?? null;
 export const rangeOf = (pair) => state.scene?.pairs[pair.i]?.[2];
@@ -113,9 +124,9 @@ export function sides(pair) {
 
 const LEAST_PUSH = 0.05;  // [N]: less is not called a push
 
-// Who pushes: how many bodies the tools, how many the links, and the pair that pushes hardest. What
-// stands fixed is one body, in which each obstacle counts for itself, a mesh as one. Where two parts that can move
-// meet, each is pushed by the other.
+// Who pushes the arm that is shown: how many bodies the tool, how many the links, and the pair
+// that pushes hardest. What stands fixed is one body, in which each obstacle counts for itself, a
+// mesh as one. Where two parts that can move meet, each is pushed by the other.
 export function pushes(pairs) {
   const tool = new Set();
   const links = new Set();
@@ -126,10 +137,11 @@ export function pushes(pairs) {
     const parts = state.scene?.parts ?? [];
     if (!parts[a] || !parts[b]) continue;
     for (const [pushed, by] of [[a, b], [b, a]]) {
-      const whose = { tool, link: links }[parts[pushed].group];
-      whose?.add(parts[by].body > 0 ? `body ${parts[by].body}` : parts[by].of || `part ${by}`);
+      const whose = parts[pushed].arm === state.arm && { tool, link: links }[parts[pushed].group];
+      if (!whose) continue;
+      whose.add(parts[by].body > 0 ? `body ${parts[by].body}` : parts[by].of || `part ${by}`);
+      if (pair.f > (hardest?.f ?? 0)) hardest = pair;
     }
-    if (pair.f > (hardest?.f ?? 0)) hardest = pair;
   }
   return { tool: tool.size, links: links.size, hardest };
 }

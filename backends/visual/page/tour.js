@@ -12,26 +12,40 @@ const force = () => norm(state.frame?.arms[0]?.force);
 const meets = (kind) => state.frame?.pairs.some((pair) => pair.f > FELT_N &&
   state.scene.pairs[pair.i]?.slice(0, 2).some((k) => kind(state.scene.parts[k])));
 
-// `done()`: what was asked for has happened; then the step after it comes by itself.
+const parts = (kind) => (state.scene?.parts ?? []).filter(kind);
+const walls = () => parts((part) => part.group === "obstacle" && !part.passable);
+const folded = () => document.documentElement.classList.contains("folded");
+
+// `done()`: what was asked for has happened; then the step after it comes by itself. `there()`:
+// the scene has what it speaks of.
 const STEPS = [
-  { text: "An arm, and walls that exist in the model alone. Turn the scene: drag beside the arm." },
-  { text: "Take the controls: press the button at the top right, or C.",
+  { text: () => "An arm, and walls that exist in the model alone. Turn the scene: drag beside " +
+                "the arm." },
+  { text: () => "Take the controls: press the button at the top" +
+                (folded() ? "." : " right, or C."),
     done: () => state.operator?.you === true },
-  { text: "Drive down with F, up with R, along with W A S D, or drag the ring at the tool. Go down " +
-          "to the table, and feel it: the orange arrow is its push, and it does not let you in.",
+  { text: () => `Drive ${folded() ? "with the sticks: the right one goes up and down"
+                                  : "down with F, up with R, along with W A S D"}, or drag the ` +
+                "ring at the tool. Go to a wall, and feel it: the orange arrow is its push, and " +
+                "it does not let you in.",
+    there: () => walls().length > 0,
     done: () => force() > FELT_N },
-  { text: "Now go into a corner, between two walls: each pushes for itself.",
+  { text: () => "Now go on to a second one: in a corner each pushes for itself.",
+    there: () => walls().length > 1,
     done: () => state.frame?.pairs.filter((pair) => pair.f > FELT_N).length > 1 },
-  { text: "A violet membrane can be passed: push harder until you are through.",
-    there: () => state.scene?.parts.some((part) => part.passable),
+  { text: () => "A violet membrane can be passed: push harder until you are through.",
+    there: () => parts((part) => part.passable).length > 0,
     done: () => meets((part) => part.passable) },
-  { text: "At the right, Energy has the ledger: what went into each module of the network. A module " +
-          "that gives more than it got would be orange; none does for long." },
-  { text: "Click a body to see what it is and what it is near. Joints, charts and events are beside " +
-          "it. ? has all keys. Restart plays the script again." },
+  { text: () => `${folded() ? "In the readings" : "At the right"}, Energy has the ledger: what ` +
+                "went into each module of the network. A module that gives more than it got would " +
+                "be orange; none does for long.",
+    there: () => state.scene?.arms.some((arm) => arm.modules.length > 0) },
+  { text: () => "Click a body to see what it is and what it is near. Joints, charts and events are " +
+                "beside it. ? has all keys. Restart plays the script again." },
 ];
 
 export class Tour {
+  #steps = [];  // those of this scene
   #step = -1;
   #asked = false;
 
@@ -59,14 +73,14 @@ export class Tour {
 
   start() {
     this.#asked = true;
+    this.#steps = STEPS.filter(({ there }) => there?.() !== false);
     this.#step = -1;
     this.#show(true);
     this.#next();
   }
 
   frame() {
-    const step = STEPS[this.#step];
-    if (step?.done?.()) this.#next();
+    if (this.#steps[this.#step]?.done?.()) this.#next();
   }
 
   #show(yes) {
@@ -75,17 +89,17 @@ export class Tour {
   }
 
   #next() {
-    do this.#step += 1;
-    while (STEPS[this.#step]?.there?.() === false);
-    const step = STEPS[this.#step];
+    if (this.#steps.length === 0) return this.start();
+    this.#step += 1;
+    const step = this.#steps[this.#step];
     if (!step) return this.#end();
-    write(at("tour-text"), `${this.#step + 1} of ${STEPS.length}. ${step.text}`);
-    write(at("tour-next"), this.#step === STEPS.length - 1 ? "Done" : "Next");
+    write(at("tour-text"), `${this.#step + 1} of ${this.#steps.length}. ${step.text()}`);
+    write(at("tour-next"), this.#step === this.#steps.length - 1 ? "Done" : "Next");
     write(at("tour-skip"), "Skip");
   }
 
   #end() {
-    this.#step = -1;
+    this.#steps = [];
     this.#show(false);
     set("toured", true);
   }

@@ -8,13 +8,15 @@ const GROUPS = [["tool", "Tool"], ["link", "Links"], ["obstacle", "Obstacles"]];
 
 export class Tree {
   #bodies = [];
+  #chosen = null;
 
-  // `parts` hides and highlights; `choose(body)` hears which one is looked at.
-  constructor(parts, choose) {
-    Object.assign(this, { parts, choose });
+  // `choose(body)` hears which one is looked at, `highlight(body)` which one is pointed at, or that
+  // none is; `hide(bodies, yes)` hides and shows, `isHidden(body)` says whether it is.
+  constructor({ choose, highlight, hide, isHidden }) {
+    Object.assign(this, { choose, highlight, hide, isHidden });
     at("tree-find").addEventListener("input", () => this.#list());
     at("tree-all").addEventListener("click", () => {
-      for (const body of this.#bodies) parts.hide(body.parts, false);
+      hide(this.#bodies, false);
       this.#list();
     });
   }
@@ -27,6 +29,7 @@ export class Tree {
 
   // The one that is looked at.
   mark(body) {
+    this.#chosen = body;
     for (const button of at("tree").querySelectorAll("button")) {
       button.setAttribute("aria-pressed", String(button.dataset.id === body?.id));
     }
@@ -48,6 +51,7 @@ export class Tree {
     }));
     write(at("tree-left"), left > 0 ? `${left} more: type a part of the name`
                                     : found.length === 0 ? "none of that name" : "");
+    this.mark(this.#chosen);
   }
 
   #row(body) {
@@ -55,9 +59,9 @@ export class Tree {
     const box = row.appendChild(document.createElement("label"))
       .appendChild(document.createElement("input"));
     box.type = "checkbox";
-    box.checked = !body.parts.every((k) => this.parts.isHidden(k));
+    box.checked = !this.isHidden(body);
     box.setAttribute("aria-label", `show ${body.name}`);
-    box.addEventListener("change", () => this.parts.hide(body.parts, !box.checked));
+    box.addEventListener("change", () => this.hide([body], !box.checked));
     const button = row.appendChild(document.createElement("button"));
     button.type = "button";
     button.dataset.id = body.id;
@@ -68,10 +72,10 @@ export class Tree {
     }
     button.addEventListener("click", () => this.choose(body));
     for (const kind of ["pointerenter", "focus"]) {
-      button.addEventListener(kind, () => this.parts.highlight(body.parts));
+      button.addEventListener(kind, () => this.highlight(body));
     }
     for (const kind of ["pointerleave", "blur"]) {
-      button.addEventListener(kind, () => this.parts.highlight([]));
+      button.addEventListener(kind, () => this.highlight(null));
     }
     return row;
   }

@@ -112,7 +112,7 @@ export class Visuals {
       mesh.visible = this.shown || mesh === this.#bodies.get(BASE);
     }
     for (const [body, mesh] of this.#bodies) {
-      if (this.parts.isBodyHidden(body)) mesh.visible = false;
+      if (body !== BASE && this.parts.isBodyHidden(body)) mesh.visible = false;
     }
     this.stage.invalidate();
   }
