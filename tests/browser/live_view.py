@@ -71,7 +71,8 @@ class LiveView(FromTheBeginning):
             const groups = ["obstacle", "obstacle", "tool", "link", "link", "obstacle"];
             const was = module.state.scene;
             module.state.scene = {
-              parts: groups.map((group, k) => ({group, body: k < 2 ? 0 : k})),
+              parts: groups.map((group, k) => ({group, body: k < 2 ? 0 : k,
+                                                arm: group === "obstacle" ? -1 : 0})),
               pairs: [[2, 0], [2, 1], [3, 0], [3, 5], [4, 5], [2, 4]]};
             const force = (...forces) => {
               const {tool, links, hardest} =
@@ -80,10 +81,13 @@ class LiveView(FromTheBeginning):
             };
             const all = [force(0, 0, 0), force(3, 4, 0), force(0, 0, 5), force(0, 0, 1, 2, 3),
                          force(0, 0, 0, 0, 0, 7), force(9, 0, 1), force(0.01)];
+            module.state.arm = 1;  // which nothing pushes
+            all.push(force(9, 9, 9, 9, 9, 9));
+            module.state.arm = 0;
             module.state.scene = was;
             return all;""")
         self.assertEqual(said, [[0, 0, None], [2, 0, 1], [0, 1, 2], [0, 2, 4], [1, 1, 5],
-                                [1, 1, 0], [0, 0, None]])
+                                [1, 1, 0], [0, 0, None], [0, 0, None]])
         said = self.module("words.js", "return [[0, 0], [1, 0], [0, 2], [2, 1]].map("
                                        "(each) => module.pushesInWords(...each))")
         self.assertEqual(said, ["nothing pushes", "the tool is pushed by 1 body",

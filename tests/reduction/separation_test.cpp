@@ -52,6 +52,57 @@ TEST(Separation, APoseThatIsNotFiniteClaimsNothingAndLeavesTheWarmStart) {
   }
 }
 
+TEST(Separation, APoseThatIsNotFiniteClaimsNothingAfterAnOverlap) {
+  const Shape shapes[] = {Shape::box({0.1, 0.1, 0.1}), Shape::cylinder(0.1, 0.1),
+                          Shape::cone(0.1, 0.1)};
+  Pose X_WB = Pose::Identity();
+  X_WB.translation() = Vec3(0.01, 0.01, 0.02);
+  for (const Shape& a : shapes) {
+    for (const Shape& b : shapes) {
+      for (const double bad : {not_a_number, infinite, -infinite}) {
+        for (int entry = 0; entry < 12; ++entry) {
+          WarmStart warm;
+          ASSERT_LT(separation(a, Pose::Identity(), b, X_WB, {}, warm).distance, 0.0);
+          Pose Y_WB = X_WB;
+          Y_WB.matrix()(entry % 3, entry / 3) = bad;
+          expect_claims_nothing(separation(a, Pose::Identity(), b, Y_WB, {}, warm));
+        }
+      }
+    }
+  }
+}
+
+TEST(Separation, WhatIsTooFarClaimsNothing) {
+  const Shape box = Shape::box({0.1, 0.1, 0.1});
+  Pose X_WB = Pose::Identity();
+  X_WB.translation().x() = 9e14;
+  EXPECT_EQ(separation(box, Pose::Identity(), box, X_WB).end, QueryEnd::converged);
+  for (const double far : {1.1e15, 1e18, 1e100}) {
+    X_WB.translation().x() = far;
+    expect_claims_nothing(separation(box, Pose::Identity(), box, X_WB));
+  }
+}
+
+// The corners that a search of few steps has seen may lie in one plane with the origin, which looks
+// like contact.
+TEST(Separation, AShortSearchDoesNotCallADeepOverlapAContact) {
+  Pose X_WA = Pose::Identity();
+  X_WA.translation().z() = 0.05;
+  const Shape cube = Shape::box({0.1, 0.1, 0.1});
+  const Shape slab = Shape::box({0.1, 0.05, 0.2});
+  int cut_short = 0;
+  for (const Measure measure : {Measure::reduction, Measure::deepest_point, Measure::exact}) {
+    for (int iterations = 1; iterations < 12; ++iterations) {
+      const Separation s = separation(cube, X_WA, slab, Pose::Identity(),
+                                      {.iterations = iterations, .measure = measure});
+      EXPECT_NE(s.end, QueryEnd::touching) << iterations;
+      EXPECT_LE(s.lower, -0.1);
+      cut_short += s.end == QueryEnd::budget_spent ? 1 : 0;
+    }
+  }
+  EXPECT_GT(cut_short, 10);
+}
+
 TEST(Separation, OptionsThatMakeNoSenseClaimNothing) {
   const Shape box = Shape::box({0.5, 0.5, 0.5});
   Pose X_WB = Pose::Identity();

@@ -161,6 +161,11 @@ TEST(World, PlaceKeepsTheOldStateWhenTheNewOneIsNotSound) {
   Pose mirrored = X;
   mirrored.linear().col(0) *= -1.0;
   EXPECT_FALSE(world.place(tool, mirrored, {}));
+  // At 1e15 m no distance can be told: a pair would have none, and the force of a contact.
+  Pose far = X;
+  far.translation().x() = 1e15;
+  EXPECT_FALSE(world.place(tool, far, {}));
+  EXPECT_THROW(world.add_body("far", far), SetupError);
 
   const BodyState& after = world.motion().bodies[tool.index];
   EXPECT_EQ(after.X_WB.matrix(), before.X_WB.matrix());

@@ -96,7 +96,7 @@ bool WorldChanges::is_time(double over) noexcept {
 }
 
 bool WorldChanges::is_pose(const Pose& X) noexcept {
-  return is_finite(X) && is_rigid(X, 1e-6);
+  return is_a_place(X, 1e-6);
 }
 
 WorldChanges::Reserved* WorldChanges::find(PartId id) noexcept {

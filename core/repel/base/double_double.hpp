@@ -12,6 +12,19 @@
 
 namespace repel {
 
+namespace detail {
+/// A product as it was rounded. Without -ffp-contract=off GCC fuses products with the sums they go
+/// into; then what is computed to be the rounding error of a sum is not.
+[[nodiscard]] inline double as_rounded(double product) noexcept {
+#if defined(__has_builtin)
+#if __has_builtin(__builtin_assoc_barrier)
+  return __builtin_assoc_barrier(product);
+#endif
+#endif
+  return product;
+}
+}  // namespace detail
+
 /// `hi + lo` with |lo| at most half an ulp of hi. Relative error of each operation: about 2^-102.
 /// Error-free sum: Knuth, TAOCP 2, 4.2.2; error-free product: by fused multiply-add.
 struct DoubleDouble {
@@ -35,7 +48,7 @@ struct DoubleDouble {
   }
   /// A b, exact unless it underflows.
   [[nodiscard]] static DoubleDouble product(double a, double b) noexcept {
-    const double p = a * b;
+    const double p = detail::as_rounded(a * b);
     return {p, std::fma(a, b, -p)};
   }
   /// As `sum`, for |a| >= |b|.

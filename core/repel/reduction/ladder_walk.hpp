@@ -243,7 +243,8 @@ inline Separation LadderWalk::answer() const noexcept {
   }
   if (!plain) s.upper = widened(s.upper + slack, 1.0);
   // A point deep inside but coplanar with all support points found looks like contact to GJK.
-  if (touches_ && s.distance >= -(margin_ + slack)) s.end = QueryEnd::touching;
+  const bool is_whole = s.end == QueryEnd::converged;
+  if (is_whole && touches_ && s.distance >= -(margin_ + slack)) s.end = QueryEnd::touching;
   if (cut_short_) s.end = QueryEnd::budget_spent;
   return s;
 }

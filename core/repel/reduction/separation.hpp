@@ -157,7 +157,6 @@ namespace detail {
 [[gnu::noinline]] inline Separation carefully_searched(PosedShape A, PosedShape B,
                                                        const QueryOptions& options, int spent,
                                                        WarmStart& warm) noexcept {
-  if (!are_usable(A.X_W, B.X_W)) return {};
   const Level& a = A.shape.level(0);
   const Level& b = B.shape.level(0);
   if (!is_by_levels(A.shape, B.shape, options) && (warm.level_a != 0 || warm.level_b != 0)) {
@@ -182,8 +181,7 @@ namespace detail {
   const double margin = A.shape.planes().margin() + B.shape.planes().margin();
   const bool deep = depth_of_cores < -1e-13 * (A.shape.reach() + B.shape.reach()) - margin;
   const bool spent_early = options.iterations - gap.iterations < DeepestPoint::most_pivots;
-  if (meets && (deep || spent_early) && !is_by_levels(A.shape, B.shape, options) &&
-      s.end == QueryEnd::converged) {
+  if (meets && (deep || spent_early) && !is_by_levels(A.shape, B.shape, options)) {
     s.end = QueryEnd::budget_spent;
   }
   return s;
@@ -193,6 +191,7 @@ namespace detail {
 [[gnu::noinline]] inline Separation searched(PosedShape A, PosedShape B,
                                              const QueryOptions& options,
                                              WarmStart& warm) noexcept {
+  if (!are_usable(A.X_W, B.X_W)) return {};
   const Level& a = A.shape.level(0);
   const Level& b = B.shape.level(0);
   if (overlapped(A.shape, B.shape, warm)) {
@@ -205,7 +204,7 @@ namespace detail {
     if (search.run(options_of_cores(a, b, options), warm, gap)) {
       return apart(gap, a.depth, b.depth, A.X_W);
     }
-    if (warm.size == 4 && are_usable(A.X_W, B.X_W)) {
+    if (warm.size == 4) {
       Separation s;
       if (measure_overlap(A, B, options, gap.iterations, true, warm, s)) return s;
     }
@@ -227,8 +226,8 @@ namespace detail {
 /// minus the depth by `options.measure` (see `docs/reduction.md`): continuous, 1-Lipschitz in
 /// translation, never deeper than the penetration depth; `lower` and `upper` bracket the true one.
 ///
-/// @param X_WA,X_WB rigid poses in the world [m]; entries that are not finite, or beyond 1e15 m,
-/// end in bad_input
+/// @param X_WA,X_WB rigid poses in the world [m]; entries that are not finite end in bad_input, and
+/// so do those beyond 1e15 m, unless the last result still holds
 /// @param warm state left by the last call on this pair; any content is safe
 /// Cost: one to three support-map pairs per call when warm. No heap, no lock, bounded by
 /// `options.iterations`.

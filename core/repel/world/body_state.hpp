@@ -48,9 +48,17 @@ struct BodyState {
   Presence presence{};       ///< of a loose body; others are always there
 };
 
-/// Moves a body. False, with nothing changed, when the pose or twist is not finite or not rigid.
+/// [m] Bodies are within this of the origin of the world, so that their distances can be told.
+inline constexpr double farthest_place = 1e14;
+
+/// True for a pose that is finite, rigid within `tolerance` per entry, and not too far.
+[[nodiscard]] inline bool is_a_place(const Pose& X_WB, double tolerance) noexcept {
+  return is_finite(X_WB) && is_rigid(X_WB, tolerance) && norm(origin(X_WB)) <= farthest_place;
+}
+
+/// Moves a body. False, with nothing changed, when the pose is no place or the twist not finite.
 inline bool place(BodyState& body, const Pose& X_WB, const Twist& V_WB) noexcept {
-  if (!is_finite(X_WB) || !is_finite(V_WB) || !is_rigid(X_WB, 1e-6)) return false;
+  if (!is_a_place(X_WB, 1e-6) || !is_finite(V_WB)) return false;
   const auto moved = [&](int k) {
     const Vec<double> d = column<double>(X_WB, k) - column<double>(body.X_WB, k);
     return dot(d, d);

@@ -112,7 +112,7 @@ class LooseParts {
     if (loose == nullptr || !is_speed(speed)) return false;
     const BodyState& body = state(motion, *loose);
     if (!body.presence.is_there() || body.presence.holder.valid()) return false;
-    if (!is_finite(X_WB) || !is_rigid(X_WB, 1e-6)) return false;
+    if (!is_a_place(X_WB, 1e-6)) return false;
     const Turn turn = turn_of(rotation(X_WB) * transposed(rotation(body.X_WB)));
     const double way = norm(origin(X_WB) - origin(body.X_WB));
     loose->move = {body.X_WB, X_WB, (way + std::abs(turn.angle) * loose->room) / speed};

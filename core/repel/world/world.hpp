@@ -248,7 +248,8 @@ class World {
     return a.inscribed_radius() + b.inscribed_radius();
   }
   static void check_rigid(const std::string& name, const Pose& X) {
-    if (!is_finite(X) || !is_rigid(X)) throw SetupError(name + ": its pose is not a rigid one");
+    if (is_a_place(X, 1e-9)) return;
+    throw SetupError(name + ": its pose is not a rigid one within 1e14 m");
   }
   [[noreturn]] static void over(const std::string& field, int limit) {
     throw SetupError("more " + field + " than Capacities::" + field +
