@@ -139,8 +139,8 @@ TEST(LivePages, PauseStepAndResume) {
   EXPECT_EQ(stage.controls.steps, 0);
   EXPECT_EQ(stage.say(1, Json{{"type", "step"}, {"ticks", 1}}), "");
   EXPECT_TRUE(stage.controls.paused) << "a step is one of a run that pauses";
-  for (const Json& ticks :
-       {Json(0), Json(-1), Json(0.5), Json(10001), Json(1e300), Json("1"), Json(nullptr)}) {
+  for (const Json& ticks : {Json(0), Json(-1), Json(0.5), Json(1.5), Json(10001), Json(1e300),
+                            Json("1"), Json(nullptr)}) {
     EXPECT_NE(stage.say(1, Json{{"type", "step"}, {"ticks", ticks}}), "") << ticks;
   }
   EXPECT_EQ(stage.controls.steps, 1);
