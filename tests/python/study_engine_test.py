@@ -254,12 +254,16 @@ def test_exit_statuses_and_what_is_printed(here, tmp_path):
     status, said, complained = here("study", held, "--out", tmp_path, "--resume", "--runs", 30,
                                     "--workers", 0)
     assert status == 0 and "30 of 30 runs held" in said
+    assert f"repel study replay {held} " in said and said.count(" --runs 30\n") == 1
 
 
 def test_a_replay_is_the_program_with_the_values(here):
     assert here("study", "replay", "toy", 3, "--view") == (0, "3 --view\n", "")
     status, said, complained = here("study", "replay", "toy", 3, "--print", "--log", "a b.csv")
     assert status == 0 and said.endswith(" 3 --log 'a b.csv'\n")
+    status, said, complained = here("study", "replay", "toy", 100)
+    assert status == 1 and "no run 100; allowed: 0 to 99" in complained
+    assert here("study", "replay", "toy", 100, "--runs", 101) == (0, "100\n", "")
 
 
 def table_of(study):

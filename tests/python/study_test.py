@@ -198,6 +198,14 @@ def test_what_is_wrong_is_refused_with_its_line_before_the_first_run(tmp_path, o
     assert error.value.line == line, error.value
 
 
+def test_a_design_of_fewer_runs_is_replayed_as_it_was_made(tmp_path):
+    pytest.importorskip("scipy")
+    text = FIRST + "sampling: latin_hypercube\n"
+    few = study_of(tmp_path, text, runs=4)
+    assert few.values(0) != study_of(tmp_path, text).values(0)
+    assert few.options == ("--runs", "4") and study_of(tmp_path, text).options == ()
+
+
 def test_a_run_in_process_takes_the_words_of_the_program():
     usual = repel.run("plates", seconds=0.5)
     same = repel.run("plates", seconds=0.5, arguments=["--set", "laws.wall.damping=100 N s/m"])

@@ -60,6 +60,7 @@ class ToyStudy:
 
     name = "toy"
     file = "toy"
+    options = ()
     quantities = (Quantity("weight", "kg", low=0.1, high=10.0, scale="log", nominal=1.0),
                   Quantity("speed", "m/s", nominal=0.5),
                   Quantity("tool", is_word=True, low=None, high=None, choices=("ball", "<rod>"),
@@ -125,7 +126,7 @@ def read_study(name, runs=None):
     kinds = {each.name: type(each.default) for each in dataclasses.fields(ToyStudy)}
     study = ToyStudy(**{key: kinds[key](value) for key, value in given.items()})
     if runs is not None:
-        study.runs = runs
+        study.runs, study.options = runs, ("--runs", str(runs))
     study.file = name
     return study
 

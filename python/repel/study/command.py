@@ -101,6 +101,7 @@ def add_to(commands: Any) -> None:
     replaying = commands.add_parser("study replay", help="make one run of a study again")
     replaying.add_argument("study", metavar="STUDY")
     replaying.add_argument("index", metavar="INDEX", type=_whole(0))
+    replaying.add_argument("--runs", type=_whole(1), metavar="N", help="as the study was made")
     how = replaying.add_mutually_exclusive_group()
     how.add_argument("--view", action="store_true", help="in the live view")
     how.add_argument("--print", action="store_true", help="print the command only")
@@ -206,7 +207,10 @@ def _counts(rows: Any) -> tuple[int, int]:
 
 
 def _replay(chosen: argparse.Namespace) -> int:
-    study = read_study(chosen.study)
+    study = read_study(chosen.study, chosen.runs)
+    if chosen.index >= study.runs:
+        raise SetupError(f"{chosen.study} has no run {chosen.index}; allowed: 0 to "
+                         f"{study.runs - 1}, or --runs as the study was made")
     if chosen.print:
         folder = Path(tempfile.mkdtemp(prefix="repel-replay-"))  # stays, as the line needs it
         print(shlex.join(_line(study, chosen, folder)))

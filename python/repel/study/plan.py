@@ -45,12 +45,13 @@ class Study:
     alone.
 
     name, file, text: of its file. runs: how many. seed: of all that is drawn. identity: a digest of
-    what decides the rows. versions: of what decides their bits. columns: name and type of the
-    columns of a row.
+    what decides the rows. versions: of what decides their bits. options: of the command line,
+    beside the file, on which the runs depend. columns: name and type of the columns of a row.
     """
 
     def __init__(self, file: str, text: str, runs: int | None = None):
         self.file, self.text = file, text
+        self.options: tuple[str, ...] = () if runs is None else ("--runs", str(runs))
         root = read(text, file)
         keys = root.entries(_KEYS)
         for required in ("scenes", "hold"):

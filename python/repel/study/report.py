@@ -131,7 +131,7 @@ def summary_of(study: Study, seen: Seen) -> dict[str, Any]:
 
 
 def _told(study: Study, row: dict[str, Any]) -> dict[str, Any]:
-    line = ["repel", "study", "replay", study.file, str(row["index"])]
+    line = ["repel", "study", "replay", study.file, str(row["index"]), *study.options]
     return {"index": row["index"], "margin": plain(row["margin"]), "held": row["held"],
             "refused": row["refused"],
             "values": {each.name: plain(row.get(each.name)) for each in study.quantities},
