@@ -2,6 +2,7 @@
 """Studies: what they draw, what they measure, and what they refuse."""
 
 import json
+import pathlib
 import pickle
 import subprocess
 import sys
@@ -142,6 +143,24 @@ def test_functions_of_the_log_are_measured(tmp_path):
     row = pickle.loads(pickle.dumps(study)).row(0)
     assert 0.1 < row["low_m"] < 1.0
     assert row["wall_force_n"] >= 0.0
+
+
+def test_a_hand_without_rows_rests(tmp_path):
+    (tmp_path / "rest.csv").write_text(",".join(hands.COLUMNS) + "\n")
+    text = FIRST[:FIRST.index("vary:")].replace("0.3", "1") + "hold: {nearest_wall_m: {above: 0}}\n"
+    study = study_of(tmp_path, text + "hand: {file: rest.csv}")
+    rest = repel.run("anderson_4x8", seconds=1.0, arguments=["--set=script=[]"])["nearest_wall_m"]
+    assert study.row(0)["nearest_wall_m"] == rest
+    assert study_of(tmp_path, text).row(0)["nearest_wall_m"] != rest
+    line = [each for each in study.command(0, tmp_path) if each.startswith("--hand=")]
+    assert pathlib.Path(line[0][7:]).read_text() == (tmp_path / "rest.csv").read_text()
+
+
+def test_a_recording_without_an_operator_is_no_hand(tmp_path):
+    repel.run("anderson_4x8", seconds=0.0, log=tmp_path / "none.mcap")
+    with pytest.raises(repel.SetupError, match="no tick"):
+        study_of(tmp_path, FIRST[:FIRST.index("hand:")] + "hand: {recording: none.mcap}\n"
+                 "hold: {exit: 0}")
 
 
 def test_the_margin_is_that_of_the_least_bound_that_has_a_measure_of_how_well(tmp_path):

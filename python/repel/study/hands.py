@@ -110,10 +110,11 @@ class RandomHand:
 
 @dataclass(frozen=True)
 class Hand:
-    """The hand of the first operator: the script (neither of both), drawn, or a table."""
+    """The hand of the first operator: the script (neither of both), drawn, or a table, in which
+    he rests where it has no rows."""
 
     random: RandomHand | None = None
-    table: tuple[tuple[float, ...], ...] = ()
+    table: tuple[tuple[float, ...], ...] | None = None
 
 
 def hand_of(entry: Entry | None, folder: str) -> Hand:
@@ -159,7 +160,7 @@ def _rows_of_csv(path: str) -> list[list[float]]:
 def _rows_of_recording(path: str) -> list[list[float]]:
     """What the first operator did: his rates, and his lever."""
     try:
-        messages = _repel._read_mcap(path, ["/inputs"])["messages"]["/inputs"]
+        messages = _repel._read_mcap(path, ["/inputs"])["messages"].get("/inputs", [])
         rows = []
         for _, _, text in messages:
             tick = json.loads(text)
@@ -168,12 +169,14 @@ def _rows_of_recording(path: str) -> list[list[float]]:
                          *arm["direction"]])
     except (KeyError, IndexError, TypeError, ValueError) as error:
         raise SetupError(f"{path}: this is not a run of repel: {error}", path) from error
+    if not rows:
+        raise SetupError(f"{path}: has no tick of an operator; allowed: a recording that has", path)
     return rows
 
 
 def write_table(rows: np.ndarray | tuple[tuple[float, ...], ...], path: str) -> None:
     """Writes the rows for `teleop run --hand`, every number to its last bit."""
-    width = len(rows[0])
+    width = len(rows[0]) if len(rows) > 0 else len(COLUMNS)
     with open(path, "w", encoding="utf-8") as file:
         file.write(",".join((COLUMNS + LEVER_COLUMNS)[:width]) + "\n")
         file.writelines(",".join(repr(float(x)) for x in row) + "\n" for row in rows)

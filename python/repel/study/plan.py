@@ -145,7 +145,7 @@ class Study:
         table = self._table(index, hand)
         words = [program(), "run", path_of(self._scene_path(values)), "--fast",
                  f"--seconds={self.seconds!r}", *self._words(values)]
-        if len(table) > 0:
+        if table is not None:
             os.makedirs(folder, exist_ok=True)
             file = os.path.join(folder, "hand.csv" if index is None else f"hand_{index}.csv")
             write_table(table, file)
@@ -153,7 +153,7 @@ class Study:
         return words
 
     def _table(self, index: int | None, numbers: Numbers | None) -> Any:
-        """The rows of the hand; none: the script."""
+        """The rows of the hand; None: the script."""
         drawn = self._hand.random
         if drawn is None or (index is None and numbers is None):
             return self._hand.table
@@ -202,7 +202,7 @@ class Study:
         return min(margins) if min(margins) <= 0.0 else min(graded or margins)
 
     def _measured(self, values: Values, table: Any, seconds: float) -> dict[str, Any]:
-        hands = [table] if len(table) > 0 else []
+        hands = [] if table is None else [table]
         scene, words = self._scene_path(values), self._words(values)
         if not any(each.needs_log for each in self._measures):
             report = run(scene, seconds=seconds, hands=hands, arguments=words)
