@@ -207,6 +207,13 @@ hold: {exit: 0}
     ("{above: -1e-4}", "{above: 1 mm}", 8, "allowed: a number"),
     ("hold: {", "hold: {}\nx: {", 9, "unknown key 'x'"),
     ("seed: 7", "seed: [", 6, "not YAML"),
+    ("[anderson_4x8]", "[plates, ./plates]", 2, "another scene has the name plates"),
+    ("vary:", "with: {contact: true}\nvary:", 6, "contact is 'true'; allowed: yes, no"),
+    ("plant_inertia: {", "tool_alone: {choice: [yes, yse]}, x: {", 6, "'yse'; allowed: yes, no"),
+    ("vary:", "with: {drive_delay: 1, robot.drive_delay: 2}\nvary:", 6, "which drive_delay sets"),
+    ("plant_inertia:", "a: {choice: {b: {plant_inertia: 1}}}, plant_inertia:", 6, "which a sets"),
+    ("laws.default.s", "laws.wall.s: {uniform: [1 N, 2 N]}, laws.wall: {choice: ['{}']}, laws.s", 6,
+     "laws.wall replaces laws.wall.s"),
 ])
 def test_what_is_wrong_is_refused_with_its_line_before_the_first_run(tmp_path, old, new, line,
                                                                      said):
@@ -215,6 +222,13 @@ def test_what_is_wrong_is_refused_with_its_line_before_the_first_run(tmp_path, o
         study_of(tmp_path, FIRST.replace(old, new))
     assert said in str(error.value)
     assert error.value.line == line, error.value
+
+
+def test_what_varies_replaces_what_is_fixed(tmp_path):
+    study = study_of(tmp_path, FIRST.replace("vary: {", "with: {walls: hard, contact: yes}\nvary: "
+                                             "{walls: {choice: [soft]}, contact: {choice: [no]}, "))
+    words = study.command(0, tmp_path)
+    assert "--walls=soft" in words and "--walls=hard" not in words and "--contact" not in words
 
 
 def test_a_design_of_fewer_runs_is_replayed_as_it_was_made(tmp_path):

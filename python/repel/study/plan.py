@@ -63,11 +63,12 @@ class Study:
         self.seed = keys["seed"].integer(0, 2**53) if "seed" in keys else 1
         self.seconds = keys["seconds"].number("s", 1e-3, 1e6) if "seconds" in keys else 20.0
         self.sampling = keys["sampling"].word_of(SAMPLINGS) if "sampling" in keys else "random"
-        self.scenes = tuple(_scene_of(each, folder) for each in keys["scenes"])
-        self._fixed = tuple((each.name, each.text) for each in
-                            keys["with"].entries().values()) if "with" in keys else ()
+        self.scenes = _scenes_of(keys["scenes"], folder)
+        self._fixed = _fixed_of(keys["with"]) if "with" in keys else ()
         drawn = [quantity_of(each) for each in keys["vary"].entries().values()] \
             if "vary" in keys else []
+        if drawn:
+            _refuse_replaced(keys["vary"], {each.name: _names_of(each) for each in drawn})
         self._hand: Hand = hand_of(keys.get("hand"), folder)
         drawn += _faults_of(keys["faults"], self.seconds) if "faults" in keys else []
         self._drawn = tuple(_with_files(each, folder) for each in drawn)
@@ -168,11 +169,15 @@ class Study:
 
     def _words(self, values: Mapping[str, float | str]) -> list[str]:
         """The options of a run with these values."""
-        words = [word for name, text in self._fixed for word in _option(name, text)]
+        settings = list(self._fixed)
         for each in self._drawn:
             if each.name in values and each.name not in (_FAULT, _FAULT_TIME):
-                words += [word for name, text in each.settings(values[each.name])
-                          for word in _option(name, text)]
+                settings += each.settings(values[each.name])
+        options: dict[str, list[str]] = {}
+        for name, text in settings:
+            options.pop(_key_of(name), None)  # what varies replaces what is fixed
+            options[_key_of(name)] = _option(name, text)
+        words = [word for option in options.values() for word in option]
         fault = values.get(_FAULT, "none")
         if fault != "none":
             words.append(f"--fault={fault}@{values.get(_FAULT_TIME, 0.0)!r}")
@@ -310,15 +315,61 @@ def _quick_folder() -> str | None:
     return "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
 
 
-def _scene_of(entry: Entry, folder: str) -> tuple[str, str]:
-    """The name that it has in the table, and where it is."""
-    beside = os.path.join(folder, entry.text)
-    path = beside if os.path.isfile(beside) else entry.text
-    try:
-        path_of(path)
-    except SetupError as error:
-        entry.fail(str(error))
-    return os.path.splitext(os.path.basename(path))[0], path
+def _scenes_of(entries: Entry, folder: str) -> tuple[tuple[str, str], ...]:
+    """The names that they have in the table, and where they are."""
+    scenes: dict[str, str] = {}
+    for entry in entries:
+        beside = os.path.join(folder, entry.text)
+        path = beside if os.path.isfile(beside) else entry.text
+        name = os.path.splitext(os.path.basename(path))[0]
+        if name in scenes:
+            entry.fail(f"another scene has the name {name} of '{entry.text}'; allowed: files with "
+                       "different names, by which the table tells them apart")
+        try:
+            path_of(path)
+            scenes[name] = path
+        except SetupError as error:
+            entry.fail(str(error))
+    return tuple(scenes.items())
+
+
+def _fixed_of(entry: Entry) -> tuple[tuple[str, str], ...]:
+    """What `with` says."""
+    fixed = entry.entries()
+    _refuse_replaced(entry, {name: [[name]] for name in fixed})
+    for each in fixed.values():
+        try:
+            _option(each.name, each.text)
+        except SetupError as error:
+            each.fail(str(error))
+    return tuple((each.name, each.text) for each in fixed.values())
+
+
+def _names_of(quantity: Quantity) -> list[list[str]]:
+    """What it sets, in each of its cases."""
+    return [[name for name, _ in case] for case in quantity.cases] or [[quantity.name]]
+
+
+def _refuse_replaced(entry: Entry, sets: Mapping[str, Sequence[Sequence[str]]]) -> None:
+    """Refuses a value that a later one replaces in the same run: it would be told, and not used.
+    sets: of each entry the names that it sets, in each of its cases."""
+    before: dict[str, str] = {}
+    for name, cases in sets.items():
+        own: dict[str, str] = {}
+        for case in cases:
+            taken = dict(before)
+            for key in map(_key_of, case):
+                for other, by in taken.items():
+                    if other == key or other.startswith(f"{key}."):
+                        entry.entries()[name].fail(f"{name} replaces {other}, which {by} sets; "
+                                                   "allowed: one entry that sets it")
+                taken[key] = own[key] = name
+        before.update(own)
+
+
+def _key_of(name: str) -> str:
+    """What a name sets: two may set the same."""
+    return _OPTIONS.get(name, _SHORT.get(name, name))
 
 
 def _option(name: str, text: str) -> list[str]:
@@ -327,6 +378,8 @@ def _option(name: str, text: str) -> list[str]:
         return [f"--{_OPTIONS[name]}={text}"]
     if name in _FLAGS:
         word, flag = _FLAGS[name]
+        if text not in ("yes", "no"):
+            raise SetupError(f"{name} is '{text}'; allowed: yes, no")
         return [flag] if text == word else []
     if name == "rate":
         found = number_and_unit(text)
