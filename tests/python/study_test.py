@@ -2,8 +2,11 @@
 """Studies: what they draw, what they measure, and what they refuse."""
 
 import json
+import os
 import pathlib
 import pickle
+import re
+import shutil
 import subprocess
 import sys
 
@@ -16,6 +19,7 @@ yaml = pytest.importorskip("yaml")
 pytest.importorskip("pyarrow")
 study_package = pytest.importorskip("repel.study.plan")
 hands = pytest.importorskip("repel.study.hands")
+files = pytest.importorskip("repel.study.files")
 if not hasattr(repel._repel, "run_scene"):
     pytest.skip("this build runs no scenes", allow_module_level=True)
 
@@ -184,6 +188,110 @@ hold: {exit: 0}
     assert 0 < len(refused) < 40
     assert all(not row["held"] and np.isnan(row["margin"]) for row in refused)
     assert "inside" in refused[0]["refused"]
+
+
+CELL = """
+scenes: [cell.yaml]
+runs: 3
+seconds: 0.05
+hold: {exit: 0}
+"""
+
+
+@pytest.fixture
+def cell(tmp_path):
+    """A scene of one's own with its robot, and a heavier one beside it."""
+    share = repel._scenes.FOLDER
+    robot = (share.parent / "robots/puma560.urdf").read_text()
+    robot = re.sub("<visual>.*?</visual>", "", robot, flags=re.DOTALL)
+    (tmp_path / "arm.urdf").write_text(robot)
+    (tmp_path / "heavy.urdf").write_text(robot.replace('mass value="10', 'mass value="12'))
+    scene = tmp_path / "cell.yaml"
+    scene.write_text((share / "plates.yaml").read_text().replace("../robots/puma560.urdf",
+                                                                 "arm.urdf"))
+    return scene
+
+
+@pytest.mark.parametrize("changed", ["cell.yaml", "arm.urdf", "heavy.urdf"])
+def test_a_file_that_changes_stops_the_study_and_makes_it_another(tmp_path, cell, changed):
+    text = CELL + "vary: {robot.urdf: {choice: [arm.urdf, heavy.urdf]}}"
+    study = study_of(tmp_path, text)
+    assert not study.row(0)["refused"]
+    (tmp_path / changed).write_text((tmp_path / changed).read_text() + "\n")
+    with pytest.raises(files.CannotRun, match=f"{changed} is not as it was"):
+        study.row(1)
+    (tmp_path / changed).rename(tmp_path / "gone")
+    with pytest.raises(files.CannotRun, match=f"{changed} is missing"):
+        study.row(1)
+    (tmp_path / "gone").rename(tmp_path / changed)
+    assert study_of(tmp_path, text).identity != study.identity
+
+
+def test_a_file_that_changes_during_a_run_leaves_no_row(tmp_path, cell, monkeypatch):
+    study = study_of(tmp_path, CELL)
+
+    def edited(*words, **options):
+        cell.write_text("no scene any more")
+        return repel.run(*words, **options)
+    monkeypatch.setattr(study_package, "run", edited)
+    with pytest.raises(files.CannotRun, match="cell.yaml is not as it was"):
+        study.row(0)
+
+
+def test_the_files_of_a_study_are_found_in_each_other(tmp_path):
+    texts = {
+        "cell/cell.yaml": "robot: {urdf: ../ws/a/arm.urdf, packages: [../ws]}\n"
+                          "partners: [{robot: {mjcf: arm.xml}}]\ncamera: {recording: seen}\n",
+        "ws/a/arm.urdf": "<robot><mesh filename='package://a/in/a.stl'/>"
+                         "<mesh filename='package://far/b.stl'/></robot>",
+        "ws/a/in/a.stl": "a", "ws/deep/other/b.stl": "b", "ws/a/in/a.stl.parts.yaml": "mesh: a.stl",
+        "cell/arm.xml": "<mujoco><compiler meshdir='in'/><include file='more.xml'/></mujoco>",
+        "cell/more.xml": "<mujoco><asset><mesh file='c.stl'/></asset></mujoco>",
+        "cell/in/c.stl": "c", "cell/seen/camera.yaml": "", "cell/seen/depth/1.png": "1",
+        "part.stl": "d", "cell/another.stl": "e"}
+    for name, text in texts.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    found = files.read_by(str(tmp_path / "cell/cell.yaml"), ["[{shape: mesh, file: part.stl}]"],
+                          str(tmp_path))
+    named = {str((tmp_path / file).resolve()) for file in set(texts) - {"cell/another.stl"}}
+    assert {os.path.realpath(file) for file, digest in found.items() if digest} == named
+
+
+def test_another_numpy_makes_another_study(tmp_path, monkeypatch):
+    pytest.importorskip("scipy")
+    study = study_of(tmp_path, FIRST)
+    assert "scipy" in study_of(tmp_path, FIRST + "sampling: sobol\n").versions
+    monkeypatch.setattr(np, "__version__", "0.1")
+    assert study_of(tmp_path, FIRST).identity != study.identity
+
+
+def test_a_study_is_the_same_wherever_it_is_called_from(cell, tmp_path, monkeypatch):
+    (tmp_path / "sub").mkdir()
+    for name, folder in (("case", "one"), ("robot.urdf", "two")):
+        choice = "{x: {robot.urdf: heavy.urdf}}" if name == "case" else "[heavy.urdf]"
+        for each in (tmp_path / folder, tmp_path / "sub" / folder):
+            each.mkdir()
+            shutil.copy(tmp_path / "heavy.urdf", each)
+        text = CELL + f"vary: {{{name}: {{choice: {choice}}}}}"
+        monkeypatch.chdir(tmp_path)  # where the scene is found
+        study, other = (study_of(each, text) for each in (tmp_path / folder,
+                                                          tmp_path / "sub" / folder))
+        monkeypatch.chdir(tmp_path / "sub")  # as a worker may be elsewhere
+        row = pickle.loads(pickle.dumps(study)).row(0)
+        assert not row["refused"] and row[name] in ("x", "heavy.urdf")
+        assert str(tmp_path / folder / "heavy.urdf") in " ".join(study.command(0, tmp_path))
+        assert row == other.row(0) and study.identity == other.identity
+
+
+def test_a_scene_of_the_package_is_found_where_the_package_is(tmp_path, monkeypatch):
+    study = pickle.dumps(study_of(tmp_path, FIRST))
+    moved = shutil.copytree(repel._scenes.FOLDER.parent, tmp_path / "share")
+    monkeypatch.setattr(files, "_SHARE", f"{moved}/")
+    (tmp_path / "anderson_4x8").mkdir()  # is no scene
+    monkeypatch.chdir(tmp_path)
+    there = pickle.loads(study)
+    assert not there.row(0)["refused"] and str(moved) in there.command(0, tmp_path)[2]
 
 
 @pytest.mark.parametrize("old, new, line, said", [

@@ -29,6 +29,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
 
 from .._errors import SetupError, needed
+from .files import CannotRun
 from .store import decoded, encoded
 
 if TYPE_CHECKING:
@@ -106,6 +107,8 @@ def _rows(study: Study, jobs: Sequence[Job]) -> tuple[bytes, str]:
     for job in jobs:
         try:
             rows.append(_row(study, job))
+        except CannotRun as error:
+            return b"", f"{name_of(job)}: {error}"
         except Exception as error:  # a bug of whatever kind: told where the study is told
             where = traceback.extract_tb(error.__traceback__)[-1]
             return b"", (f"{name_of(job)}: {type(error).__name__}: {error} "

@@ -14,11 +14,12 @@ from typing import Any
 import numpy as np
 
 from .. import _repel
-from .._errors import SetupError, how_to_have
+from .._errors import SetupError, how_to_have, needed
 from .._scenes import path_of
 from ..program import program, run
 from ..recording import read_recording
 from .entry import Entry, did_you_mean, number_and_unit, read
+from .files import anywhere, here, read_by, require_same
 from .hands import Hand, hand_of, write_table
 from .measures import Bound, Measure, bounds_of, measures_of, unknown
 from .quantities import SAMPLINGS, Quantity, draws, quantity_of, shares
@@ -45,8 +46,9 @@ class Study:
     alone.
 
     name, file, text: of its file. runs: how many. seed: of all that is drawn. identity: a digest of
-    what decides the rows. versions: of what decides their bits. options: of the command line,
-    beside the file, on which the runs depend. columns: name and type of the columns of a row.
+    what decides the rows. versions: of what decides their bits. files: digests of what the runs
+    read. options: of the command line, beside the file, on which the runs depend. columns: name and
+    type of the columns of a row.
     """
 
     def __init__(self, file: str, text: str, runs: int | None = None):
@@ -57,13 +59,13 @@ class Study:
         for required in ("scenes", "hold"):
             if required not in keys:
                 root.fail(f"no key '{required}'; required: scenes, hold")
-        folder = os.path.dirname(os.path.abspath(file))
+        self._folder = folder = os.path.dirname(os.path.abspath(file))
         name = os.path.splitext(os.path.basename(file))[0]
         self.name = keys["name"].text if "name" in keys else name
         self.seed = keys["seed"].integer(0, 2**53) if "seed" in keys else 1
         self.seconds = keys["seconds"].number("s", 1e-3, 1e6) if "seconds" in keys else 20.0
         self.sampling = keys["sampling"].word_of(SAMPLINGS) if "sampling" in keys else "random"
-        self.scenes = _scenes_of(keys["scenes"], folder)
+        self._scenes = _scenes_of(keys["scenes"], folder)
         self._fixed = _fixed_of(keys["with"]) if "with" in keys else ()
         drawn = [quantity_of(each) for each in keys["vary"].entries().values()] \
             if "vary" in keys else []
@@ -71,18 +73,26 @@ class Study:
             _refuse_replaced(keys["vary"], {each.name: _names_of(each) for each in drawn})
         self._hand: Hand = hand_of(keys.get("hand"), folder)
         drawn += _faults_of(keys["faults"], self.seconds) if "faults" in keys else []
-        self._drawn = tuple(_with_files(each, folder) for each in drawn)
+        self._drawn = tuple(drawn)
         self.bounds: tuple[Bound, ...] = tuple(bounds_of(keys["hold"]))
         self._measures = self._all_measures(measures_of(keys.get("measure"), folder))
         self.runs = self._runs_of(keys.get("runs"), runs)
+        self.files = self._read()
         self._check(root, keys)
-        self.identity = self._digest()
         self.versions = self.versions_here()
+        self.identity = self._digest()
 
-    @staticmethod
-    def versions_here() -> dict[str, str]:
+    def versions_here(self) -> dict[str, str]:
         """Of what decides the bits of a row, in this process."""
-        return {"repel": _version(), "numpy": np.__version__}
+        versions = {"repel": _version(), "numpy": np.__version__}
+        if self.sampling != "random":
+            versions["scipy"] = needed("scipy", extra="study").__version__
+        return versions
+
+    @property
+    def scenes(self) -> tuple[tuple[str, str], ...]:
+        """The names of the scenes in the table, and where they are on this machine."""
+        return tuple((name, here(path)) for name, path in self._scenes)
 
     @property
     def quantities(self) -> tuple[Quantity, ...]:
@@ -144,7 +154,7 @@ class Study:
         index = which if isinstance(which, int) else None
         values = self.values(which) if isinstance(which, int) else dict(which)
         table = self._table(index, hand)
-        words = [program(), "run", path_of(self._scene_path(values)), "--fast",
+        words = [program(), "run", self._scene_path(values), "--fast",
                  f"--seconds={self.seconds!r}", *self._words(values)]
         if table is not None:
             os.makedirs(folder, exist_ok=True)
@@ -176,7 +186,7 @@ class Study:
         options: dict[str, list[str]] = {}
         for name, text in settings:
             options.pop(_key_of(name), None)  # what varies replaces what is fixed
-            options[_key_of(name)] = _option(name, text)
+            options[_key_of(name)] = _option(name, self._beside(name, text))
         words = [word for option in options.values() for word in option]
         fault = values.get(_FAULT, "none")
         if fault != "none":
@@ -188,12 +198,16 @@ class Study:
         row.update({each.name: "" for each in self._drawn if each.is_word})
         row.update(values)
         row["scene"] = values.get("scene", self.scenes[0][0])
+        require_same(self.files)
+        refused = ""
         try:
-            measured = self._measured(values, table, seconds or self.seconds)
+            row.update(self._measured(values, table, seconds or self.seconds))
         except SetupError as error:
+            refused = str(error)
+        require_same(self.files)  # they may have changed meanwhile
+        if refused:
             row.update({each.name: "" for each in self._measures if each.is_word})
-            return {**row, "refused": str(error), "held": False}
-        row.update(measured)
+            return {**row, "refused": refused, "held": False}
         least = self._margin(row)
         return {**row, "margin": least, "refused": "", "held": least > 0.0}
 
@@ -276,17 +290,25 @@ class Study:
             checked.append(dataclasses.replace(each, is_word=is_word))
         self._measures = tuple(checked)
 
+    def _beside(self, name: str, text: str) -> str:
+        """Robot files beside the study by their whole path: a scene would look beside itself."""
+        path = os.path.join(self._folder, text)
+        return path if name in _FILES and os.path.isfile(path) else text
+
+    def _read(self) -> dict[str, str]:
+        settings = [*self._fixed, *((name, str(text)) for each in self._drawn
+                                    for choice in each.choices
+                                    for name, text in each.settings(choice))]
+        texts = list(dict.fromkeys(text for _, text in settings))
+        return {file: digest for _, scene in self.scenes
+                for file, digest in read_by(scene, texts, self._folder).items()}
+
     def _digest(self) -> str:
         digest = hashlib.blake2b(digest_size=16)
-        files = [path_of(scene) for _, scene in self.scenes]
-        files += [_repel.load_scene(file).robot for file in list(files)]
         # More runs leave those that are drawn by themselves as they are.
         runs = "" if self.sampling == "random" else str(self.runs)
-        parts = [self.text, runs, _version(), repr(self._hand.table)]
-        parts += [each.source for each in self._measures]
-        for file in files:
-            with open(file, "rb") as contents:
-                parts.append(hashlib.blake2b(contents.read()).hexdigest())
+        parts = [self.text, runs, repr(self.versions), repr(self._hand.table)]
+        parts += [*(each.source for each in self._measures), *self.files.values()]
         for part in parts:
             digest.update(hashlib.blake2b(part.encode()).digest())
         return digest.hexdigest()
@@ -326,8 +348,7 @@ def _scenes_of(entries: Entry, folder: str) -> tuple[tuple[str, str], ...]:
             entry.fail(f"another scene has the name {name} of '{entry.text}'; allowed: files with "
                        "different names, by which the table tells them apart")
         try:
-            path_of(path)
-            scenes[name] = path
+            scenes[name] = anywhere(os.path.abspath(path_of(path)))
         except SetupError as error:
             entry.fail(str(error))
     return tuple(scenes.items())
@@ -387,16 +408,6 @@ def _option(name: str, text: str) -> list[str]:
         if found and factor:
             return [f"--rate={found[0] * factor!r}"]
     return [f"--set={_SHORT.get(name, name)}={text}"]
-
-
-def _with_files(quantity: Quantity, folder: str) -> Quantity:
-    """Robot files beside the study by their whole path: a scene would look beside itself."""
-    if quantity.name not in _FILES:
-        return quantity
-    paths = tuple(os.path.join(folder, str(each)) for each in quantity.choices)
-    choices = tuple(path if os.path.isfile(path) else each
-                    for path, each in zip(paths, quantity.choices))
-    return dataclasses.replace(quantity, choices=choices)
 
 
 def _faults_of(entry: Entry, seconds: float) -> list[Quantity]:
