@@ -6,6 +6,7 @@ import os
 import pathlib
 import pickle
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -292,6 +293,19 @@ def test_a_scene_of_the_package_is_found_where_the_package_is(tmp_path, monkeypa
     monkeypatch.chdir(tmp_path)
     there = pickle.loads(study)
     assert not there.row(0)["refused"] and str(moved) in there.command(0, tmp_path)[2]
+
+
+def test_a_log_that_is_not_whole_is_no_result(tmp_path):
+    study = study_of(tmp_path, CELL.replace("cell.yaml", "plates").replace(
+        "exit: 0", "joint_speed_rad_s: {below: 100}"))
+    assert study.row(0)["held"]
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
+    try:
+        with pytest.raises(files.CannotRun, match="log.csv: cannot be written: File too large"):
+            study.row(0)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
 @pytest.mark.parametrize("old, new, line, said", [

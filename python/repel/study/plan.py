@@ -19,7 +19,7 @@ from .._scenes import path_of
 from ..program import program, run
 from ..recording import read_recording
 from .entry import Entry, did_you_mean, number_and_unit, read
-from .files import anywhere, here, read_by, require_same
+from .files import CannotRun, anywhere, here, read_by, require_same
 from .hands import Hand, hand_of, write_table
 from .measures import Bound, Measure, bounds_of, measures_of, unknown
 from .quantities import SAMPLINGS, Quantity, draws, quantity_of, shares
@@ -228,7 +228,15 @@ class Study:
             return {each.name: each.of(report, None) for each in self._measures}
         with tempfile.TemporaryDirectory(dir=_quick_folder()) as folder:
             file = os.path.join(folder, "log.csv")
-            report = run(scene, seconds=seconds, hands=hands, arguments=words, log=file)
+            try:
+                report = run(scene, seconds=seconds, hands=hands, arguments=words, log=file)
+                trouble = report["log_trouble"]
+            except SetupError as error:
+                trouble = str(error)
+                if not trouble.startswith(file):
+                    raise
+            if trouble:
+                raise CannotRun(f"{trouble}; allowed: room for the log of a run")
             log = read_recording(file)
         return {each.name: each.of(report, log) for each in self._measures}
 
