@@ -35,10 +35,10 @@ def hear_interrupts():
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-def begin(*arguments, **how):
+def begin(*arguments, environment=ENVIRONMENT, **how):
     how.setdefault("preexec_fn", hear_interrupts)
     return subprocess.Popen([sys.executable, TOY, *map(str, arguments)], stdout=subprocess.PIPE,
-                            stderr=subprocess.PIPE, text=True, env=ENVIRONMENT, **how)
+                            stderr=subprocess.PIPE, text=True, env=environment, **how)
 
 
 def end(child):
@@ -132,6 +132,21 @@ def test_a_run_that_kills_its_workers_becomes_a_row(here, tmp_path):
     assert [row["index"] for row in dead] == [33] and not dead[0]["held"]
     assert dead[0]["refused"] == "the worker died"
     assert [row["index"] for row in rows] == list(range(40))
+
+
+def test_workers_that_dask_gives_up_are_started_again(tmp_path):
+    hasty = {**ENVIRONMENT, "DASK_DISTRIBUTED__DEPLOY__LOST_WORKER_TIMEOUT": "1ms"}
+    status, said, complained = repel("study", "toy:runs=4,killer=2", "--out", tmp_path, "--workers",
+                                     1, environment=hasty)
+    assert status == 6 and "run 2: the worker died each time" in complained
+
+
+def test_says_that_its_workers_do_not_start(here, tmp_path, monkeypatch):
+    def killed(**_):
+        raise RuntimeError("Nanny failed to start")
+    monkeypatch.setattr("distributed.LocalCluster", killed)
+    status, said, complained = here("study", "toy", "--out", tmp_path)
+    assert status == 1 and "do not start: Nanny failed to start; allowed: fewer" in complained
 
 
 def test_goes_on_after_the_coordinator_was_killed(whole_table, tmp_path):
