@@ -49,10 +49,12 @@ def test_a_row_is_a_function_of_study_and_index(tmp_path):
     assert study.row(4) != {**row, "index": 4}
 
 
-def test_the_command_of_a_run_makes_the_same_bits(tmp_path, teleop):
+def test_the_command_of_a_run_makes_the_same_bits_in_any_folder(tmp_path, teleop, monkeypatch):
     study = study_of(tmp_path, FIRST)
     row = study.row(2)
-    line = study.command(2, str(tmp_path / "replay"))
+    with monkeypatch.context() as elsewhere:
+        elsewhere.chdir(tmp_path)
+        line = study.command(2, "replay")
     report = tmp_path / "report.json"
     subprocess.run([teleop, *line[1:], "--quiet", "--report", report], check=True)
     told = json.loads(report.read_text())

@@ -8,6 +8,7 @@ import json
 import math
 import os
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from .. import _repel
 from .._errors import SetupError
 from .entry import Entry
 from .quantities import draws
+from .store import whole
 
 #: The columns of a table of a hand, see `teleop run --hand`.
 COLUMNS = ("time_s", "vx_m_s", "vy_m_s", "vz_m_s", "wx_rad_s", "wy_rad_s", "wz_rad_s")
@@ -172,8 +174,8 @@ def _rows_of_recording(path: str) -> list[list[float]]:
 
 
 def write_table(rows: np.ndarray | tuple[tuple[float, ...], ...], path: str) -> None:
-    """Writes the rows for `teleop run --hand`, every number to its last bit."""
-    width = len(rows[0])
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(",".join((COLUMNS + LEVER_COLUMNS)[:width]) + "\n")
-        file.writelines(",".join(repr(float(x)) for x in row) + "\n" for row in rows)
+    """Writes the rows for `teleop run --hand`, every number to its last bit. Raises NotWritten."""
+    lines = [(COLUMNS + LEVER_COLUMNS)[:len(rows[0])], *([repr(float(x)) for x in row]
+                                                         for row in rows)]
+    with whole(Path(path)) as file:
+        file.write("".join(",".join(line) + "\n" for line in lines).encode())

@@ -138,15 +138,15 @@ class Study:
     def command(self, which: int | Mapping[str, float | str], folder: str | os.PathLike[str],
                 hand: Numbers | None = None) -> list[str]:
         """The command line that makes a run again, of an index or of values. Writes the table of
-        the hand, if there is one, to `folder`."""
+        the hand, if there is one, to `folder`. Raises NotWritten."""
         index = which if isinstance(which, int) else None
         values = self.values(which) if isinstance(which, int) else dict(which)
         table = self._table(index, hand)
         words = [program(), "run", path_of(self._scene_path(values)), "--fast",
                  f"--seconds={self.seconds!r}", *self._words(values)]
         if len(table) > 0:
-            os.makedirs(folder, exist_ok=True)
-            file = os.path.join(folder, "hand.csv" if index is None else f"hand_{index}.csv")
+            name = "hand.csv" if index is None else f"hand_{index}.csv"
+            file = os.path.abspath(os.path.join(folder, name))  # the line is for any folder
             write_table(table, file)
             words.append(f"--hand={file}")
         return words

@@ -41,10 +41,11 @@ class NotWritten(Exception):
 
 @contextlib.contextmanager
 def whole(path: Path) -> Iterator[IO[bytes]]:
-    """A file to write that takes its place once it is whole. Raises NotWritten, and then leaves
-    what was in its place."""
+    """A file to write that takes its place once it is whole, in a folder that is made for it.
+    Raises NotWritten, and then leaves what was in its place."""
     beside = path.with_name(f".{path.name}.unfinished")
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         with open(beside, "wb") as file:
             yield file
             file.flush()
@@ -55,6 +56,14 @@ def whole(path: Path) -> Iterator[IO[bytes]]:
     finally:
         with contextlib.suppress(OSError):
             beside.unlink(missing_ok=True)
+
+
+def try_to_write(folder: Path) -> None:
+    """Makes the folder. Raises NotWritten if a file of some size cannot be written there."""
+    trial = folder / ".trial"
+    with whole(trial) as file:
+        file.write(bytes(1 << 16))
+    trial.unlink()
 
 
 def encoded(rows: Sequence[Mapping[str, Any]], columns: Sequence[tuple[str, str]]) -> bytes:
