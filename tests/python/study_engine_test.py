@@ -347,6 +347,16 @@ def test_reports_what_failed(tmp_path):
     assert page.index("speed: explains") < page.index("weight: explains")
 
 
+@pytest.mark.parametrize("study, held", [(ToyStudy(runs=3, limit=2), "yes"),
+                                         (ToyStudy(runs=3, limit=-1), "NO"),
+                                         (ToyStudy(runs=3, limit=2, odd=1), "not known"),
+                                         (ToyStudy(runs=3, limit=2, refuse=1), "not known")])
+def test_a_bound_that_was_not_measured_is_not_said_to_have_held(tmp_path, study, held):
+    summary, page = reported(study, tmp_path)
+    assert f">{held}</span>" in page.partition("What held")[2].partition("</table>")[0]
+    assert ("1 not measured" in report.as_text(summary)) == (held == "not known")
+
+
 def test_the_bound_is_that_of_clopper_and_pearson():
     assert report.upper_bound(0, 100) == pytest.approx(1 - 0.05 ** (1 / 100))
     assert report.upper_bound(3, 10) == pytest.approx(0.60662, abs=1e-5)

@@ -173,7 +173,8 @@ def as_text(summary: dict[str, Any]) -> str:
     lines = [sentence(summary["failed"], summary["refused"], summary["runs"],
                       summary["upper_bound"])]
     for bound in summary["bounds"]:
-        lines.append(f"  {demand(bound)}: {bound['failed']} did not hold, least margin "
+        unmeasured = f"{bound['not_measured']} not measured, " if bound["not_measured"] else ""
+        lines.append(f"  {demand(bound)}: {bound['failed']} did not hold, {unmeasured}least margin "
                      f"{number(bound['least_margin'])}")
     worst = summary["worst"]
     lines.append(f"worst: run {worst['index']}, {_outcome(worst)}")
@@ -442,14 +443,23 @@ def _what_held(summary: dict[str, Any]) -> str:
              "refused at set-up": str(summary["refused"]),
              "at most fail, 95 %": percent(summary["upper_bound"]),
              "least margin": number(summary["worst"]["margin"])}
-    rows = [[_text(demand(bound)), "<span class='no'>NO</span>" if bound["failed"] else
-             "<span class='yes'>yes</span>", str(bound["failed"]), str(bound["not_measured"]),
-             number(bound["least_margin"])] for bound in summary["bounds"]]
+    rows = [[_text(demand(bound)), _answer(bound), str(bound["failed"]),
+             str(bound["not_measured"]), number(bound["least_margin"])]
+            for bound in summary["bounds"]]
     says = sentence(failed, summary["refused"], runs, summary["upper_bound"])
     return (f"<p class='says'>{_text(says)}</p>\n<p class='soft'>{_LIMITS}</p>\n<dl class='tiles'>"
             + "".join(f"<div><dt>{name}</dt><dd>{_text(value)}</dd></div>"
                       for name, value in tiles.items()) + "</dl>\n<h2>What held</h2>\n"
             + _table(["bound", "held", "runs that did not", "not measured", "least margin"], rows))
+
+
+def _answer(bound: dict[str, Any]) -> str:
+    """Whether a bound held in all runs; what was not measured did not, for what is known."""
+    if bound["failed"]:
+        return "<span class='no'>NO</span>"
+    if bound["not_measured"]:
+        return "<span class='no'>not known</span>"
+    return "<span class='yes'>yes</span>"
 
 
 def _worst(study: Study, summary: dict[str, Any]) -> str:
