@@ -287,6 +287,9 @@ def test_a_folder_has_one_writer(tmp_path):
             Store(tmp_path, ToyStudy(), resume=True)
     with pytest.raises(SetupError, match="another study"):  # none has been made, but of whom?
         Store(tmp_path, ToyStudy(salt="other"))
+    (tmp_path / "study.yaml").write_bytes(b"\xff")
+    with pytest.raises(SetupError, match="another study"):
+        Store(tmp_path, ToyStudy())
 
 
 def test_rows_that_come_twice_are_kept_once(tmp_path):

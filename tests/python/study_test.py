@@ -190,6 +190,23 @@ hold: {exit: 0}
     ("{above: -1e-4}", "{above: 1 mm}", 8, "allowed: a number"),
     ("hold: {", "hold: {}\nx: {", 9, "unknown key 'x'"),
     ("seed: 7", "seed: [", 6, "not YAML"),
+    ("seed: 7", "seed: " + 3000 * "[" + 3000 * "]", 0, "nested too deep"),
+    ("[anderson_4x8]", "[]", 2, "scenes is empty"),
+    ("hold:", "measure: [scene]\nhold:", 8, "another column of the table"),
+    ("hold: {", "hold: {margin: 1, ", 8, "another column of the table"),
+    ("{above: -1e-4}", "{above: -inf}", 8, "allowed: a finite number"),
+    ("{above: -1e-4}", "{above: 1, scale: inf}", 8, "scale is 'inf'"),
+    ("hold: {", "hold: {exit: zero, ", 8, "'zero', but it is a number"),
+    ("hold: {", "hold: {exit: 0 N, ", 8, "'0 N', but it is a number"),
+    ("hold: {", "hold: {prediction: yes, ", 8, "of yes and no 1 and 0"),
+    ("hold: {", "hold: {backend: {above: 3}, ", 8, "it is a word, as 'bullet'"),
+    ("vary: {", "measure: [physical_contact]\nvary: {contact: {choice: [no, yes]}, ", 6,
+     "not measured with contact of anderson_4x8 set to yes"),
+    ("vary: {", "vary: {levels: {uniform: [1, 15]}, ", 6, "levels of anderson_4x8 set to 8."),
+    ("vary: {", "vary: {fault: {choice: [nonsense]}, ", 6, "no fault is called 'nonsense'"),
+    ("vary: {", "faults: {names: [none]}\nvary: {fault: {choice: [none]}, ", 7, "one of both"),
+    ("vary: {", "vary: {fault_s: {uniform: [1 ms, 2 ms]}, ", 6, "numbers in s"),
+    ("seconds: 0.3", "seconds: 1e6", 7, "has 4000003 knots"),
 ])
 def test_what_is_wrong_is_refused_with_its_line_before_the_first_run(tmp_path, old, new, line,
                                                                      said):
@@ -198,6 +215,34 @@ def test_what_is_wrong_is_refused_with_its_line_before_the_first_run(tmp_path, o
         study_of(tmp_path, FIRST.replace(old, new))
     assert said in str(error.value)
     assert error.value.line == line, error.value
+
+
+@pytest.mark.parametrize("own, said", [
+    ("x = 3", "x of .* is no function"),
+    ("def x(log, report): return None", "x returned None; allowed: a number"),
+    ("def x(log, report): return 'high'", "x returned 'high'; allowed: a number"),
+    ("def x(log, report): return 1 / 0", r"ZeroDivisionError: .*own.py:1\)")])
+def test_functions_of_the_log_are_tried_before_the_first_run(tmp_path, own, said):
+    (tmp_path / "own.py").write_text(own)
+    with pytest.raises(repel.SetupError, match=said):
+        study_of(tmp_path, FIRST.replace("hold:", "measure: [{mine: own.py:x}]\nhold:"))
+
+
+def test_a_function_may_need_a_whole_log(tmp_path):
+    (tmp_path / "own.py").write_text("def x(log, report): return log['z_m'][100]\n")  # of 120
+    study_of(tmp_path, FIRST.replace("hold:", "measure: [{mine: own.py:x}]\nhold:"))
+
+
+@pytest.mark.parametrize("rows, said", [
+    ("0,0,0,0,0,0,0\n1,2,3,4\n", "hand.csv:3: a row of 4 numbers; allowed: 7"),
+    ("0,0,0,0,0,0,0\n\n", "hand.csv:3: a row of 0 numbers"),
+    ("0,0,0,0,0,0,nan\n", "study.yaml:3: row 1 of the hand has what is no number"),
+    ("1,0,0,0,0,0,0\n1,0,0,0,0,0,0\n", "study.yaml:3: row 2 of the hand is not later")])
+def test_a_table_of_a_hand_is_tried_before_the_first_run(tmp_path, rows, said):
+    (tmp_path / "hand.csv").write_text(",".join(hands.COLUMNS) + "\n" + rows)
+    with pytest.raises(repel.SetupError, match=said):
+        study_of(tmp_path, "scenes: [anderson_4x8]\nseconds: 0.1\nhand: {file: hand.csv}\n"
+                           "hold: {exit: 0}\n")
 
 
 def test_a_run_in_process_takes_the_words_of_the_program():

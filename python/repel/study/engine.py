@@ -21,14 +21,13 @@ import queue
 import signal
 import statistics
 import time
-import traceback
 import uuid
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
 
 from .._errors import SetupError, needed
+from .measures import told
 from .store import decoded, encoded
 
 if TYPE_CHECKING:
@@ -107,9 +106,7 @@ def _rows(study: Study, jobs: Sequence[Job]) -> tuple[bytes, str]:
         try:
             rows.append(_row(study, job))
         except Exception as error:  # a bug of whatever kind: told where the study is told
-            where = traceback.extract_tb(error.__traceback__)[-1]
-            return b"", (f"{name_of(job)}: {type(error).__name__}: {error} "
-                         f"({Path(where.filename).name}:{where.lineno})")
+            return b"", f"{name_of(job)}: {told(error)}"
     return encoded(rows, study.columns), ""
 
 

@@ -152,6 +152,10 @@ def _rows_of_csv(path: str) -> list[list[float]]:
         raise SetupError(f"{path}:1: the first line is not that of a hand; allowed: "
                          f"{','.join(COLUMNS)}, and behind it possibly ,{','.join(LEVER_COLUMNS)}",
                          path, 1)
+    for line, row in enumerate(rows[1:], 2):
+        if len(row) != len(names):
+            raise SetupError(f"{path}:{line}: a row of {len(row)} numbers; allowed: {len(names)}, "
+                             "as the first line has names", path, line)
     try:
         return [[float(number) for number in row] for row in rows[1:]]
     except ValueError as error:

@@ -20,7 +20,7 @@ from ..program import program, run
 from ..recording import read_recording
 from .entry import Entry, did_you_mean, number_and_unit, read
 from .hands import Hand, hand_of, write_table
-from .measures import Bound, Measure, bounds_of, measures_of, unknown
+from .measures import Bound, Measure, bounds_of, measures_of, told, unknown
 from .quantities import SAMPLINGS, Quantity, draws, quantity_of, shares
 
 _KEYS = ("name", "scenes", "runs", "seed", "seconds", "sampling", "with", "vary", "hand", "faults",
@@ -35,6 +35,8 @@ _SHORT = {"drive_delay": "robot.drive_delay"}
 _FILES = ("robot.urdf", "robot.mjcf", "robot.srdf")
 _FAULT, _FAULT_TIME = "fault", "fault_s"
 _OWN = ("index", "scene", "margin", "refused", "held")
+_BESIDE = 0.0013371  # of a distribution, from its middle; of no usual range a whole number
+_KNOTS = 1_000_000  # of a hand, at most, which takes a gigabyte
 
 Values = dict[str, float | str]
 Numbers = Sequence[float]
@@ -63,6 +65,8 @@ class Study:
         self.seconds = keys["seconds"].number("s", 1e-3, 1e6) if "seconds" in keys else 20.0
         self.sampling = keys["sampling"].word_of(SAMPLINGS) if "sampling" in keys else "random"
         self.scenes = tuple(_scene_of(each, folder) for each in keys["scenes"])
+        if not self.scenes:
+            keys["scenes"].fail("scenes is empty; allowed: one scene or more")
         self._fixed = tuple((each.name, each.text) for each in
                             keys["with"].entries().values()) if "with" in keys else ()
         drawn = [quantity_of(each) for each in keys["vary"].entries().values()] \
@@ -235,40 +239,97 @@ class Study:
         """
         if not hasattr(_repel, "run_scene"):
             raise SetupError(f"this build runs no scenes: {how_to_have('teleop')}")
+        vary = keys["vary"].entries() if "vary" in keys else {}
+        for measure in self.measures:
+            if measure in _OWN:
+                _place_of(measure, keys).fail(f"'{measure}' is no measure, but another column of "
+                                              "the table")
         for each in self._drawn:
             if each.name in _OWN or each.name in self.measures:
                 root.fail(f"'{each.name}' cannot vary; it is another column of the table")
+            if each.name in (_FAULT, _FAULT_TIME) and each.name in vary and "faults" in keys:
+                vary[each.name].fail(f"{each.name} is drawn by faults, too; allowed: one of both")
+            if each.name == _FAULT_TIME and (each.is_word or each.unit not in ("", "s")):
+                vary[each.name].fail(f"{each.name} is no time in s; allowed: numbers in s")
         reports = [run(scene, seconds=0.0, arguments=self._words({})) for _, scene in self.scenes]
         for report in reports:
             self._require_measured(report, keys)
-        trials: list[Values] = [{each.name: each.at(0.5)} for each in self._drawn
-                                if each.name not in (_FAULT, _FAULT_TIME)]
-        trials += [{each.name: choice} for each in self._drawn for choice in each.choices
-                   if each.name != _FAULT and len(each.choices) <= 100]
-        for trial in trials:
-            self._try(trial, keys)
+        self._measures = tuple(dataclasses.replace(each, is_word=isinstance(
+            each.of(reports[-1], None), str)) for each in self._measures)
+        self._check_bounds(reports[-1], keys)
+        self._check_hand(keys)
+        self._try_own(keys)
+        for each in self._drawn:
+            if each.name in vary:
+                few = each.choices if len(each.choices) <= 100 else ()
+                for value in few or (each.at(0.5),):
+                    self._try({each.name: value}, vary[each.name], keys)
+                if not each.choices:
+                    self._try_beside(each, vary[each.name], keys)
 
-    def _try(self, values: Values, keys: Mapping[str, Entry]) -> None:
+    def _try(self, values: Values, entry: Entry, keys: Mapping[str, Entry]) -> None:
         for name, scene in self.scenes:
+            what = f"{entry.name} of {name} set to {values[entry.name]}"
             try:
-                run(scene, seconds=0.0, arguments=self._words(values))
+                report = run(scene, seconds=0.0, arguments=self._words(values))
             except SetupError as error:
-                what = next(iter(values))
-                entry = keys["vary"].entries()[what]
-                others = "" if "." in what else (
+                others = "" if "." in entry.name else (
                     f" (or an option of a run: {', '.join([*_OPTIONS, *_FLAGS, 'rate'])})")
-                entry.fail(f"{what} of {name} set to {values[what]}: {error}{others}")
+                entry.fail(f"{what}: {error}{others}")
+            self._require_measured(report, keys, f" with {what}")
 
-    def _require_measured(self, report: Mapping[str, Any], keys: Mapping[str, Entry]) -> None:
-        checked = []
+    def _try_beside(self, quantity: Quantity, entry: Entry, keys: Mapping[str, Entry]) -> None:
+        """The middle may be the only value that is whole, or 0: one of those beside it has to do"""
+        try:
+            self._try({quantity.name: quantity.at(0.5 - _BESIDE)}, entry, keys)
+        except SetupError:
+            self._try({quantity.name: quantity.at(0.5 + _BESIDE)}, entry, keys)
+
+    def _require_measured(self, report: Mapping[str, Any], keys: Mapping[str, Entry],
+                          where: str = "") -> None:
         for each in self._measures:
             try:
-                is_word = not each.needs_log and isinstance(each.of(report, None), str)
+                each.of(report, None)
             except KeyError as error:
-                where = keys["hold"].entries().get(each.name) or keys.get("measure", keys["hold"])
-                raise unknown(where, each.name, report) from error
-            checked.append(dataclasses.replace(each, is_word=is_word))
-        self._measures = tuple(checked)
+                raise unknown(_place_of(each.name, keys), each.name, report, where) from error
+
+    def _check_bounds(self, report: Mapping[str, Any], keys: Mapping[str, Entry]) -> None:
+        """A word never equals a number."""
+        values = {each.name: each.of(report, None) for each in self._measures}
+        for bound in self.bounds:
+            value = values[bound.measure]
+            if isinstance(value, str) and not isinstance(bound.limit, str):
+                _place_of(bound.measure, keys).fail(
+                    f"{bound.measure} {bound.relation} {bound.limit:g}, but it is a word, as "
+                    f"'{value}'; allowed: a word that it equals")
+            if isinstance(bound.limit, str) and not isinstance(value, str) and value == value:
+                _place_of(bound.measure, keys).fail(
+                    f"{bound.measure} equals '{bound.limit}', but it is a number; allowed: a "
+                    "number without a unit, of yes and no 1 and 0")
+
+    def _check_hand(self, keys: Mapping[str, Entry]) -> None:
+        drawn = self._hand.random
+        if drawn and drawn.knots(self.seconds) > _KNOTS:
+            keys["hand"].fail(f"a random hand of {drawn.bandwidth:g} Hz for {self.seconds:g} s has "
+                              f"{drawn.knots(self.seconds)} knots; allowed: {_KNOTS}, with a lower "
+                              "bandwidth or fewer seconds")
+        try:
+            for _, scene in self.scenes if self._hand.table else ():
+                run(scene, seconds=0.0, hands=[self._hand.table], arguments=self._words({}))
+        except SetupError as error:
+            keys["hand"].fail(str(error))
+
+    def _try_own(self, keys: Mapping[str, Entry]) -> None:
+        """Calls functions of one's own: with a short log, and if that is not enough, a whole one"""
+        if not any(each.function for each in self._measures):
+            return
+        try:
+            self._measured({}, self._hand.table, min(0.1, self.seconds))
+        except Exception:
+            try:
+                self._measured({}, self._hand.table, self.seconds)
+            except Exception as error:
+                keys["measure"].fail(told(error))
 
     def _digest(self) -> str:
         digest = hashlib.blake2b(digest_size=16)
@@ -318,6 +379,11 @@ def _scene_of(entry: Entry, folder: str) -> tuple[str, str]:
     except SetupError as error:
         entry.fail(str(error))
     return os.path.splitext(os.path.basename(path))[0], path
+
+
+def _place_of(measure: str, keys: Mapping[str, Entry]) -> Entry:
+    """Where a measure is named."""
+    return keys["hold"].entries().get(measure) or keys.get("measure", keys["hold"])
 
 
 def _option(name: str, text: str) -> list[str]:

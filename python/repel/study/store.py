@@ -134,7 +134,8 @@ class Store:
         for file in there:
             self._count(file)
         copy = self.folder / "study.yaml"
-        if not there and copy.exists() and copy.read_text() != self._study.text:
+        text = self._study.text.encode()
+        if not there and copy.exists() and copy.read_bytes() != text:
             raise SetupError(f"{copy}: is another study; allowed: another folder", str(copy))
         if self.results.exists():  # and has all that the parts had
             shutil.rmtree(self._parts, ignore_errors=True)
@@ -149,7 +150,7 @@ class Store:
                 raise NotWritten(self._parts, error) from error
         if not copy.exists():
             with whole(copy) as out:
-                out.write(self._study.text.encode())
+                out.write(text)
 
     def _files(self) -> list[Path]:
         if self.results.exists():
