@@ -232,6 +232,7 @@ def test_refuses_a_scheduler_that_is_not_there(here, tmp_path, address):
     assert status == 1
     assert complained.startswith(f"repel: --scheduler {address}: ")
     assert "tcp://HOST:8786" in complained and len(complained.splitlines()) == 1
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("workers", [0, 1])
@@ -272,9 +273,9 @@ def test_exit_statuses_and_what_is_printed(here, tmp_path):
 
 
 def test_a_replay_is_the_program_with_the_values(here):
-    assert here("study", "replay", "toy", 3, "--view") == (0, "3 --view\n", "")
+    assert here("study", "replay", "toy", 3, "--view") == (0, "3 --view\n", "")  # by the clock
     status, said, complained = here("study", "replay", "toy", 3, "--print", "--log", "a b.csv")
-    assert status == 0 and said.endswith(" 3 --log 'a b.csv'\n")
+    assert status == 0 and said.endswith(" 3 --fast --log 'a b.csv'\n")
 
 
 def table_of(study):
@@ -312,6 +313,26 @@ def test_names_a_part_that_is_damaged(tmp_path):
     (tmp_path / "parts/0.parquet").write_bytes(b"PAR1")
     with pytest.raises(SetupError, match="0.parquet: cannot be read"):
         Store(tmp_path, study, resume=True)
+
+
+def test_names_a_part_whose_rows_are_damaged(tmp_path):
+    study = ToyStudy(runs=50)
+    with Store(tmp_path, study) as store:
+        store.add(table_of(study))
+        store.flush()
+        part, = parts(tmp_path)
+        group = parquet.read_metadata(part).row_group(0)
+        with open(part, "r+b") as file:  # not of its index, which is read to go on
+            file.seek(group.column(group.num_columns - 1).data_page_offset)
+            file.write(bytes(8))
+        with pytest.raises(SetupError, match="0.parquet: cannot be read: .* allowed: to delete it"):
+            store.finish()
+
+
+def test_a_report_of_fewer_runs_goes_with_their_table(tmp_path):
+    reported(ToyStudy(runs=5), tmp_path)
+    Store(tmp_path, ToyStudy(runs=9), resume=True).close()
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["parts", "study.yaml"]
 
 
 def test_what_is_in_place_stays_until_the_new_one_is_whole(tmp_path):

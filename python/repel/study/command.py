@@ -200,6 +200,9 @@ def _study(chosen: argparse.Namespace) -> int:
             progress.say(f"stopped with {study.runs - len(store.missing)} of {study.runs} runs; to "
                          f"go on: {again}")
             return NOT_WHOLE
+        except SetupError:
+            store.discard()
+            raise
         except NotWritten as error:
             progress.say(f"{error}; what was written before is sound; to go on: {again}")
             return NOT_WHOLE
@@ -233,8 +236,10 @@ def _replay(chosen: argparse.Namespace) -> int:
 
 
 def _line(study: Study, chosen: argparse.Namespace, folder: Path) -> list[str]:
-    return [*study.command(chosen.index, folder), *(["--view"] if chosen.view else []),
-            *(["--log", chosen.log] if chosen.log else [])]
+    line = study.command(chosen.index, folder)
+    if chosen.view:  # by the clock, as nobody sees it otherwise
+        line = [*(word for word in line if word != "--fast"), "--view"]
+    return [*line, *(["--log", chosen.log] if chosen.log else [])]
 
 
 def _falsify(chosen: argparse.Namespace) -> int:

@@ -92,6 +92,12 @@ def schema_of(columns: Sequence[tuple[str, str]], metadata: Mapping[str, str] | 
     return pa.schema([pa.field(name, kinds[kind]) for name, kind in columns], metadata)
 
 
+def _unreadable(file: Path, error: Exception) -> SetupError:
+    why = " ".join(str(error).split())  # Arrow's has lines
+    return SetupError(f"{file}: cannot be read: {why}; allowed: to delete it, as --resume then "
+                      "makes its runs again", str(file))
+
+
 class Store:
     """The folder of one study, locked against a second process until `close`."""
 
@@ -144,8 +150,10 @@ class Store:
                 self._parts.mkdir(exist_ok=True)
                 for unfinished in self._parts.glob(".*.unfinished"):
                     unfinished.unlink()
-                if self.results.exists():  # of fewer runs
+                if self.results.exists():  # of fewer runs, as what was said of them
                     os.replace(self.results, self._parts / "0.parquet")
+                    for said in ("summary.json", "report.html"):
+                        (self.folder / said).unlink(missing_ok=True)
             except OSError as error:
                 raise NotWritten(self._parts, error) from error
         if not copy.exists():
@@ -176,8 +184,7 @@ class Store:
         except (OSError, ValueError) as error:  # Arrow's are both
             if isinstance(error, SetupError):
                 raise
-            raise SetupError(f"{file}: cannot be read: {error}; without it --resume makes its runs "
-                             "again", str(file)) from error
+            raise _unreadable(file, error) from error
 
     @property
     def missing(self) -> Sequence[int]:
@@ -243,12 +250,21 @@ class Store:
             pieces = []
             for path, number, least, largest in spans:
                 if least < end and largest >= first:
-                    piece = self._pq.ParquetFile(path).read_row_group(number)
+                    try:
+                        piece = self._pq.ParquetFile(path).read_row_group(number)
+                    except (OSError, ValueError) as error:
+                        raise _unreadable(path, error) from error
                     index = piece["index"].to_numpy()
                     pieces.append(piece.filter((index >= first) & (index < end)))
             table = pa.concat_tables(pieces).sort_by("index").combine_chunks()
             assert np.array_equal(table["index"].to_numpy(), np.arange(first, end))
             yield table.replace_schema_metadata(self._schema.metadata)
+
+    def discard(self) -> None:
+        """Takes away what stands for a study of which no run was made."""
+        if not self._files():
+            shutil.rmtree(self._parts, ignore_errors=True)
+            (self.folder / "study.yaml").unlink(missing_ok=True)
 
     def close(self) -> None:
         """Lets the folder go. Rows that are in no part yet are dropped."""
