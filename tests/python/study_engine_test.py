@@ -381,6 +381,32 @@ def test_a_bound_that_was_not_measured_is_not_said_to_have_held(tmp_path, study,
     assert ("1 not measured" in report.as_text(summary)) == (held == "not known")
 
 
+class Design(ToyStudy):
+    """Its runs are chosen, and its tools have long names."""
+
+    is_random = False
+    tools = tuple(f"a long name, {i}" for i in range(12))
+    quantities = (Quantity("tool", is_word=True, low=None, high=None, choices=tools),
+                  Quantity("other", is_word=True, low=None, high=None, choices=tools))
+    columns = (*ToyStudy.columns, ("other", "string"))
+
+    def values(self, index):
+        word = self.tools[index % 12]
+        return {**super().values(index), "tool": word, "other": word}
+
+
+def test_what_is_no_random_sample_proves_no_share(tmp_path):
+    summary, page = reported(Design(runs=40), tmp_path)
+    assert summary["upper_bound"] is None
+    assert "95 %" not in page + report.as_text(summary) and "no random sample" in page
+
+
+def test_long_words_below_a_chart_do_not_overlap(tmp_path):
+    page = reported(Design(runs=40), tmp_path)[1]
+    assert page.count("rotate(-40") == 24
+    assert "matter most" not in page  # neither explains anything
+
+
 def test_the_bound_is_that_of_clopper_and_pearson():
     assert report.upper_bound(0, 100) == pytest.approx(1 - 0.05 ** (1 / 100))
     assert report.upper_bound(3, 10) == pytest.approx(0.60662, abs=1e-5)

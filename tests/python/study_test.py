@@ -81,6 +81,16 @@ def test_draws_fill_their_ranges_and_are_the_same_everywhere(tmp_path):
     assert study.values(0)["plant_inertia"] == 0.9722714752047603
 
 
+@pytest.mark.parametrize("keys, is_random", [
+    ("vary: {plant_inertia: {uniform: [0.6, 1.7]}}", True),
+    ("sampling: sobol\nvary: {plant_inertia: {uniform: [0.6, 1.7]}}", False),
+    ("vary: {plant_inertia: {grid: [1, 1.5]}}", False),
+    ("hand: {random: {speed: 0.1 m/s, bandwidth: 2 Hz}}\nvary: {rate: {grid: [200 Hz]}}", True)])
+def test_knows_whether_its_runs_are_a_random_sample(tmp_path, keys, is_random):
+    study = study_of(tmp_path, f"scenes: [anderson_4x8]\nruns: 4\n{keys}\nhold: {{exit: 0}}\n")
+    assert study.is_random == is_random
+
+
 @pytest.mark.parametrize("sampling", ["latin_hypercube", "sobol"])
 def test_designs_leave_no_gap(tmp_path, sampling):
     pytest.importorskip("scipy")

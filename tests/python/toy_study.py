@@ -60,6 +60,7 @@ class ToyStudy:
 
     name = "toy"
     file = "toy"
+    is_random = True
     quantities = (Quantity("weight", "kg", low=0.1, high=10.0, scale="log", nominal=1.0),
                   Quantity("speed", "m/s", nominal=0.5),
                   Quantity("tool", is_word=True, low=None, high=None, choices=("ball", "<rod>"),

@@ -94,6 +94,12 @@ class Study:
         return (*(first if len(scenes) > 1 else []), *self._drawn)
 
     @property
+    def is_random(self) -> bool:
+        """Whether the runs are a random sample: not for designs and grids, which are chosen."""
+        is_drawn = any(each.kind != "grid" for each in self._drawn)
+        return self.sampling == "random" if is_drawn else self._hand.random is not None
+
+    @property
     def measures(self) -> tuple[str, ...]:
         return tuple(each.name for each in self._measures)
 
