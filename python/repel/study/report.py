@@ -298,11 +298,11 @@ def _frame(x: Axis, y: Axis, inside: str, label: str) -> str:
     tall = _HEIGHT + (_ASLANT if is_tight else 0)
     parts = [f"<svg viewBox='0 0 {_WIDTH} {tall}' role='img' aria-label='{_text(label)}'>"]
     for at, text in x.ticks:
-        px, py = _LEFT + at * wide, _TOP + high + 14
-        how = (f"text-anchor='end' transform='rotate(-40 {px:.1f} {py})'" if is_tight else
+        px, below = _LEFT + at * wide, _TOP + high + 14
+        how = (f"text-anchor='end' transform='rotate(-40 {px:.1f} {below})'" if is_tight else
                "text-anchor='middle'")
         parts.append(f"<path class='grid' d='M{px:.1f} {_TOP}v{high}'/><text x='{px:.1f}' "
-                     f"y='{py}' {how}>{_text(text)}</text>")
+                     f"y='{below}' {how}>{_text(text)}</text>")
     for at, text in y.ticks:
         py = _TOP + (1 - at) * high
         parts.append(f"<path class='grid' d='M{_LEFT} {py:.1f}h{wide}'/><text x='{_LEFT - 5}' "
