@@ -285,7 +285,7 @@ class Study:
             self._require_measured(report, keys, f" with {what}")
 
     def _try_beside(self, quantity: Quantity, entry: Entry, keys: Mapping[str, Entry]) -> None:
-        """The middle may be the only value that is whole, or 0: one of those beside it has to do"""
+        """The middle may be the only value that is whole, or 0: one beside it has to do, too."""
         try:
             self._try({quantity.name: quantity.at(0.5 - _BESIDE)}, entry, keys)
         except SetupError:
@@ -326,7 +326,7 @@ class Study:
             keys["hand"].fail(str(error))
 
     def _try_own(self, keys: Mapping[str, Entry]) -> None:
-        """Calls functions of one's own: with a short log, and if that is not enough, a whole one"""
+        """Calls functions of one's own: with a short log, or if that is not enough, a whole one."""
         if not any(each.function for each in self._measures):
             return
         try:
@@ -334,6 +334,8 @@ class Study:
         except Exception:
             try:
                 self._measured({}, self._hand.table, self.seconds)
+            except SetupError:
+                raise
             except Exception as error:
                 keys["measure"].fail(told(error))
 
