@@ -35,10 +35,10 @@ def hear_interrupts():
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-def begin(*arguments, **how):
+def begin(*arguments, environment=ENVIRONMENT, **how):
     how.setdefault("preexec_fn", hear_interrupts)
     return subprocess.Popen([sys.executable, TOY, *map(str, arguments)], stdout=subprocess.PIPE,
-                            stderr=subprocess.PIPE, text=True, env=ENVIRONMENT, **how)
+                            stderr=subprocess.PIPE, text=True, env=environment, **how)
 
 
 def end(child):
@@ -134,6 +134,21 @@ def test_a_run_that_kills_its_workers_becomes_a_row(here, tmp_path):
     assert [row["index"] for row in rows] == list(range(40))
 
 
+def test_workers_that_dask_gives_up_are_started_again(tmp_path):
+    hasty = {**ENVIRONMENT, "DASK_DISTRIBUTED__DEPLOY__LOST_WORKER_TIMEOUT": "1ms"}
+    status, said, complained = repel("study", "toy:runs=4,killer=2", "--out", tmp_path, "--workers",
+                                     1, environment=hasty)
+    assert status == 6 and "run 2: the worker died each time" in complained
+
+
+def test_says_that_its_workers_do_not_start(here, tmp_path, monkeypatch):
+    def killed(**_):
+        raise RuntimeError("Nanny failed to start")
+    monkeypatch.setattr("distributed.LocalCluster", killed)
+    status, said, complained = here("study", "toy", "--out", tmp_path)
+    assert status == 1 and "do not start: Nanny failed to start; allowed: fewer" in complained
+
+
 def test_goes_on_after_the_coordinator_was_killed(whole_table, tmp_path):
     child = begin("study", ENDLESS, "--out", tmp_path, "--workers", 2)
     wait_for(lambda: len(parts(tmp_path)) > 1, child)
@@ -217,6 +232,7 @@ def test_refuses_a_scheduler_that_is_not_there(here, tmp_path, address):
     assert status == 1
     assert complained.startswith(f"repel: --scheduler {address}: ")
     assert "tcp://HOST:8786" in complained and len(complained.splitlines()) == 1
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("workers", [0, 1])
@@ -258,12 +274,12 @@ def test_exit_statuses_and_what_is_printed(here, tmp_path):
 
 
 def test_a_replay_is_the_program_with_the_values(here):
-    assert here("study", "replay", "toy", 3, "--view") == (0, "3 --view\n", "")
+    assert here("study", "replay", "toy", 3, "--view") == (0, "3 --view\n", "")  # by the clock
     status, said, complained = here("study", "replay", "toy", 3, "--print", "--log", "a b.csv")
-    assert status == 0 and said.endswith(" 3 --log 'a b.csv'\n")
+    assert status == 0 and said.endswith(" 3 --fast --log 'a b.csv'\n")
     status, said, complained = here("study", "replay", "toy", 100)
     assert status == 1 and "no run 100; allowed: 0 to 99" in complained
-    assert here("study", "replay", "toy", 100, "--runs", 101) == (0, "100\n", "")
+    assert here("study", "replay", "toy", 100, "--runs", 101) == (0, "100 --fast\n", "")
 
 
 def table_of(study):
@@ -276,6 +292,9 @@ def test_a_folder_has_one_writer(tmp_path):
             Store(tmp_path, ToyStudy(), resume=True)
     with pytest.raises(SetupError, match="another study"):  # none has been made, but of whom?
         Store(tmp_path, ToyStudy(salt="other"))
+    (tmp_path / "study.yaml").write_bytes(b"\xff")
+    with pytest.raises(SetupError, match="another study"):
+        Store(tmp_path, ToyStudy())
 
 
 def test_rows_that_come_twice_are_kept_once(tmp_path):
@@ -298,6 +317,26 @@ def test_names_a_part_that_is_damaged(tmp_path):
     (tmp_path / "parts/0.parquet").write_bytes(b"PAR1")
     with pytest.raises(SetupError, match="0.parquet: cannot be read"):
         Store(tmp_path, study, resume=True)
+
+
+def test_names_a_part_whose_rows_are_damaged(tmp_path):
+    study = ToyStudy(runs=50)
+    with Store(tmp_path, study) as store:
+        store.add(table_of(study))
+        store.flush()
+        part, = parts(tmp_path)
+        group = parquet.read_metadata(part).row_group(0)
+        with open(part, "r+b") as file:  # not of its index, which is read to go on
+            file.seek(group.column(group.num_columns - 1).data_page_offset)
+            file.write(bytes(8))
+        with pytest.raises(SetupError, match="0.parquet: cannot be read: .* allowed: to delete it"):
+            store.finish()
+
+
+def test_a_report_of_fewer_runs_goes_with_their_table(tmp_path):
+    reported(ToyStudy(runs=5), tmp_path)
+    Store(tmp_path, ToyStudy(runs=9), resume=True).close()
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["parts", "study.yaml"]
 
 
 def test_what_is_in_place_stays_until_the_new_one_is_whole(tmp_path):
@@ -334,6 +373,42 @@ def test_reports_what_failed(tmp_path):
     assert "<rod>" not in page and "&lt;rod&gt;" in page
     assert "http" not in page.replace("http://www.w3.org", "")
     assert page.index("speed: explains") < page.index("weight: explains")
+
+
+@pytest.mark.parametrize("study, held", [(ToyStudy(runs=3, limit=2), "yes"),
+                                         (ToyStudy(runs=3, limit=-1), "NO"),
+                                         (ToyStudy(runs=3, limit=2, odd=1), "not known"),
+                                         (ToyStudy(runs=3, limit=2, refuse=1), "not known")])
+def test_a_bound_that_was_not_measured_is_not_said_to_have_held(tmp_path, study, held):
+    summary, page = reported(study, tmp_path)
+    assert f">{held}</span>" in page.partition("What held")[2].partition("</table>")[0]
+    assert ("1 not measured" in report.as_text(summary)) == (held == "not known")
+
+
+class Design(ToyStudy):
+    """Its runs are chosen, and its tools have long names."""
+
+    is_random = False
+    tools = tuple(f"a long name, {i}" for i in range(12))
+    quantities = (Quantity("tool", is_word=True, low=None, high=None, choices=tools),
+                  Quantity("other", is_word=True, low=None, high=None, choices=tools))
+    columns = (*ToyStudy.columns, ("other", "string"))
+
+    def values(self, index):
+        word = self.tools[index % 12]
+        return {**super().values(index), "tool": word, "other": word}
+
+
+def test_what_is_no_random_sample_proves_no_share(tmp_path):
+    summary, page = reported(Design(runs=40), tmp_path)
+    assert summary["upper_bound"] is None
+    assert "95 %" not in page + report.as_text(summary) and "no random sample" in page
+
+
+def test_long_words_below_a_chart_do_not_overlap(tmp_path):
+    page = reported(Design(runs=40), tmp_path)[1]
+    assert page.count("rotate(-40") == 24
+    assert "matter most" not in page  # neither explains anything
 
 
 def test_the_bound_is_that_of_clopper_and_pearson():

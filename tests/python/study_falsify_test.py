@@ -13,7 +13,7 @@ for needs in ("cma", "pyarrow", "scipy"):
 
 from problem import ROOT
 from repel import SetupError
-from repel.study import falsify
+from repel.study import command, falsify
 from repel.study.engine import Here
 from toy_study import ToyStudy
 
@@ -52,6 +52,22 @@ def test_takes_away_what_the_failure_does_not_need():
     assert found.random_runs == found.runs
 
 
+class Chain(planted.Planted):
+    """Fails with all three set, without the third, and with the second alone."""
+
+    def __init__(self):
+        super().__init__([planted.Number(name, nominal=0.5) for name in ("a", "b", "c")], 0, 1)
+
+    def margin(self, values, hand):
+        names = "".join(name for name in "abc" if values[name] != 0.5)
+        return -1.0 if names in ("abc", "ab", "b") else 1.0
+
+
+def test_takes_away_what_could_not_be_taken_before_the_rest_was():
+    found = falsify.search(Chain(), Here(), runs=10, seed=1, compare=False)
+    assert list(found.minimal.values) == ["b"] and sorted(found.set_back) == ["a", "c"]
+
+
 def test_is_the_same_for_the_same_seed_and_keeps_its_budget():
     first, again, other = (falsify.search(planted.Slot(6, 1, width=0.01), Here(), runs=90,
                                           seed=seed, every=True) for seed in (1, 1, 2))
@@ -72,10 +88,18 @@ class Refused(Corner):
         return {**row, **how, "held": False}
 
 
-def test_what_is_refused_is_no_failure():
+def test_what_is_refused_is_no_failure_and_yet_did_not_hold():
     found = falsify.search(Refused(), Here(), runs=200, seed=1)
     assert not found.worst.is_failure and found.minimal is None
     assert 0 < found.worst.margin < 0.2
+    assert 0 < found.failed == found.unmeasured < 200 and 0 < found.random_failed < 200
+
+
+def test_says_that_runs_were_refused(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(command, "read_study", lambda name: Refused())
+    assert command.main(["falsify", "it", "--runs", "50", "--workers", "0", "--out",
+                         str(tmp_path / "found")]) == 6
+    assert "of 50 runs were refused or without a measure; they did not" in capsys.readouterr().out
 
 
 class Unbounded(planted.Planted):
@@ -112,8 +136,36 @@ def test_refuses_a_study_in_which_nothing_varies():
         falsify.search(Nothing(), Here())
 
 
+def test_tries_to_write_before_it_searches(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(command, "read_study", lambda name: ToyStudy())
+    monkeypatch.setattr(falsify, "search", lambda *_, **__: pytest.fail("it searches"))
+    (tmp_path / "file").touch()
+    assert command.main(["falsify", "it", "--workers", "0", "--out", str(tmp_path / "file/x")]) == 4
+    assert "not written: Not a directory" in capsys.readouterr().err
+
+
+def test_a_search_is_told_where_its_folder_cannot_be_written_any_more(tmp_path, monkeypatch,
+                                                                      capsys):
+    def tried_in_vain(folder):
+        folder.touch()
+    monkeypatch.setattr(command, "read_study", lambda name: ToyStudy())
+    monkeypatch.setattr(command, "try_to_write", tried_in_vain)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    assert command.main(["falsify", "it", "--workers", "0", "--out", str(tmp_path / "out")]) == 4
+    said, complained = capsys.readouterr()
+    elsewhere, = tmp_path.glob("repel-falsify-*/falsify.json")
+    assert "failure found" in said and f"is in {elsewhere.parent}" in complained
+
+
+@pytest.mark.parametrize("words", [("--minutes", "0"), ("--minutes", "nan"), ("--minutes", "-1"),
+                                   ("--seed", "5000000000"), ("--runs", "100000000000000")])
+def test_refuses_budgets_that_are_none(words, capsys):
+    with pytest.raises(SystemExit):
+        command.main(["falsify", "it", *words])
+    assert f"argument {words[0]}: {words[1]} is no " in capsys.readouterr().err
+
+
 def test_writes_what_it_found(tmp_path, monkeypatch, capsys):
-    from repel.study import command
     monkeypatch.setattr(command, "read_study", lambda name: ToyStudy(limit=float(name)))
     monkeypatch.chdir(tmp_path)
     arguments = ["--runs", "40", "--workers", "0", "--out"]

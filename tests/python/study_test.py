@@ -55,10 +55,12 @@ def test_a_row_is_a_function_of_study_and_index(tmp_path):
     assert study.row(4) != {**row, "index": 4}
 
 
-def test_the_command_of_a_run_makes_the_same_bits(tmp_path, teleop):
+def test_the_command_of_a_run_makes_the_same_bits_in_any_folder(tmp_path, teleop, monkeypatch):
     study = study_of(tmp_path, FIRST)
     row = study.row(2)
-    line = study.command(2, str(tmp_path / "replay"))
+    with monkeypatch.context() as elsewhere:
+        elsewhere.chdir(tmp_path)
+        line = study.command(2, "replay")
     report = tmp_path / "report.json"
     subprocess.run([teleop, *line[1:], "--quiet", "--report", report], check=True)
     told = json.loads(report.read_text())
@@ -83,6 +85,16 @@ def test_draws_fill_their_ranges_and_are_the_same_everywhere(tmp_path):
     assert abs(np.mean(np.log(force)) - np.mean(np.log([20, 400]))) < 0.1
     assert abs(np.corrcoef(inertia, force)[0, 1]) < 0.1
     assert study.values(0)["plant_inertia"] == 0.9722714752047603
+
+
+@pytest.mark.parametrize("keys, is_random", [
+    ("vary: {plant_inertia: {uniform: [0.6, 1.7]}}", True),
+    ("sampling: sobol\nvary: {plant_inertia: {uniform: [0.6, 1.7]}}", False),
+    ("vary: {plant_inertia: {grid: [1, 1.5]}}", False),
+    ("hand: {random: {speed: 0.1 m/s, bandwidth: 2 Hz}}\nvary: {rate: {grid: [200 Hz]}}", True)])
+def test_knows_whether_its_runs_are_a_random_sample(tmp_path, keys, is_random):
+    study = study_of(tmp_path, f"scenes: [anderson_4x8]\nruns: 4\n{keys}\nhold: {{exit: 0}}\n")
+    assert study.is_random == is_random
 
 
 @pytest.mark.parametrize("sampling", ["latin_hypercube", "sobol"])
@@ -336,6 +348,23 @@ def test_a_log_that_is_not_whole_is_no_result(tmp_path):
     ("plant_inertia:", "a: {choice: {b: {plant_inertia: 1}}}, plant_inertia:", 6, "which a sets"),
     ("laws.default.s", "laws.wall.s: {uniform: [1 N, 2 N]}, laws.wall: {choice: ['{}']}, laws.s", 6,
      "laws.wall replaces laws.wall.s"),
+    ("seed: 7", "seed: " + 3000 * "[" + 3000 * "]", 0, "nested too deep"),
+    ("[anderson_4x8]", "[]", 2, "scenes is empty"),
+    ("hold:", "measure: [scene]\nhold:", 8, "another column of the table"),
+    ("hold: {", "hold: {margin: 1, ", 8, "another column of the table"),
+    ("{above: -1e-4}", "{above: -inf}", 8, "allowed: a finite number"),
+    ("{above: -1e-4}", "{above: 1, scale: inf}", 8, "scale is 'inf'"),
+    ("hold: {", "hold: {exit: zero, ", 8, "'zero', but it is a number"),
+    ("hold: {", "hold: {exit: 0 N, ", 8, "'0 N', but it is a number"),
+    ("hold: {", "hold: {prediction: yes, ", 8, "of yes and no 1 and 0"),
+    ("hold: {", "hold: {backend: {above: 3}, ", 8, "it is a word, as 'bullet'"),
+    ("vary: {", "measure: [physical_contact]\nvary: {contact: {choice: [no, yes]}, ", 6,
+     "not measured with contact of anderson_4x8 set to yes"),
+    ("vary: {", "vary: {levels: {uniform: [1, 15]}, ", 6, "levels of anderson_4x8 set to 8."),
+    ("vary: {", "vary: {fault: {choice: [nonsense]}, ", 6, "no fault is called 'nonsense'"),
+    ("vary: {", "faults: {names: [none]}\nvary: {fault: {choice: [none]}, ", 7, "one of both"),
+    ("vary: {", "vary: {fault_s: {uniform: [1 ms, 2 ms]}, ", 6, "numbers in s"),
+    ("seconds: 0.3", "seconds: 1e6", 7, "has 4000003 knots"),
 ])
 def test_what_is_wrong_is_refused_with_its_line_before_the_first_run(tmp_path, old, new, line,
                                                                      said):
@@ -359,6 +388,32 @@ def test_a_design_of_fewer_runs_is_replayed_as_it_was_made(tmp_path):
     few = study_of(tmp_path, text, runs=4)
     assert few.values(0) != study_of(tmp_path, text).values(0)
     assert few.options == ("--runs", "4") and study_of(tmp_path, text).options == ()
+@pytest.mark.parametrize("own, said", [
+    ("x = 3", "x of .* is no function"),
+    ("def x(log, report): return None", "x returned None; allowed: a number"),
+    ("def x(log, report): return 'high'", "x returned 'high'; allowed: a number"),
+    ("def x(log, report): return 1 / 0", r"ZeroDivisionError: .*own.py:1\)")])
+def test_functions_of_the_log_are_tried_before_the_first_run(tmp_path, own, said):
+    (tmp_path / "own.py").write_text(own)
+    with pytest.raises(repel.SetupError, match=said):
+        study_of(tmp_path, FIRST.replace("hold:", "measure: [{mine: own.py:x}]\nhold:"))
+
+
+def test_a_function_may_need_a_whole_log(tmp_path):
+    (tmp_path / "own.py").write_text("def x(log, report): return log['z_m'][100]\n")  # of 120
+    study_of(tmp_path, FIRST.replace("hold:", "measure: [{mine: own.py:x}]\nhold:"))
+
+
+@pytest.mark.parametrize("rows, said", [
+    ("0,0,0,0,0,0,0\n1,2,3,4\n", "hand.csv:3: a row of 4 numbers; allowed: 7"),
+    ("0,0,0,0,0,0,0\n\n", "hand.csv:3: a row of 0 numbers"),
+    ("0,0,0,0,0,0,nan\n", "study.yaml:3: row 1 of the hand has what is no number"),
+    ("1,0,0,0,0,0,0\n1,0,0,0,0,0,0\n", "study.yaml:3: row 2 of the hand is not later")])
+def test_a_table_of_a_hand_is_tried_before_the_first_run(tmp_path, rows, said):
+    (tmp_path / "hand.csv").write_text(",".join(hands.COLUMNS) + "\n" + rows)
+    with pytest.raises(repel.SetupError, match=said):
+        study_of(tmp_path, "scenes: [anderson_4x8]\nseconds: 0.1\nhand: {file: hand.csv}\n"
+                           "hold: {exit: 0}\n")
 
 
 def test_a_run_in_process_takes_the_words_of_the_program():

@@ -61,6 +61,7 @@ class ToyStudy:
     name = "toy"
     file = "toy"
     options = ()
+    is_random = True
     quantities = (Quantity("weight", "kg", low=0.1, high=10.0, scale="log", nominal=1.0),
                   Quantity("speed", "m/s", nominal=0.5),
                   Quantity("tool", is_word=True, low=None, high=None, choices=("ball", "<rod>"),
@@ -117,7 +118,7 @@ class ToyStudy:
         return self.values(index), None
 
     def command(self, what, folder, hand=None):
-        return [sys.executable, "-c", "import sys; print(*sys.argv[1:])", f"{what}"]
+        return [sys.executable, "-c", "import sys; print(*sys.argv[1:])", f"{what}", "--fast"]
 
 
 def read_study(name, runs=None):

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import shlex
 import signal
 import subprocess
@@ -18,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from .._errors import SetupError
 from . import falsify, report
 from .engine import engine
-from .store import NotWritten, Store
+from .store import NotWritten, Store, try_to_write
 
 if TYPE_CHECKING:
     from .plan import Study
@@ -113,8 +114,9 @@ def add_to(commands: Any) -> None:
     searching.add_argument("--out", metavar="FOLDER", help="default: NAME_falsified")
     searching.add_argument("--runs", type=_whole(1), metavar="N", default=500,
                            help="of the search (default: %(default)s)")
-    searching.add_argument("--minutes", type=float, metavar="M", help="of the search, at most")
-    searching.add_argument("--seed", type=_whole(0), metavar="S", default=1)
+    searching.add_argument("--minutes", type=_minutes, metavar="M", default=math.inf,
+                           help="of the search, at most")
+    searching.add_argument("--seed", type=_whole(0, 2**31), metavar="S", default=1)
     searching.add_argument("--all", action="store_true", help="go on after the first failure, for "
                            "the worst one")
     searching.add_argument("--no-compare", dest="compare", action="store_false",
@@ -129,13 +131,23 @@ def add_to(commands: Any) -> None:
         each.add_argument("--json", action="store_true", help="print the summary as JSON")
 
 
-def _whole(least: int) -> Callable[[str], int]:
+def _whole(least: int, most: int = 10**9) -> Callable[[str], int]:
     """Reads a whole number."""
     def read(text: str) -> int:
-        if not text.isdecimal() or int(text) < least:
-            raise argparse.ArgumentTypeError(f"{text} is no whole number from {least} on")
+        if not text.isdecimal() or len(text) > 20 or not least <= int(text) <= most:
+            raise argparse.ArgumentTypeError(f"{text} is no whole number from {least} to {most}")
         return int(text)
     return read
+
+
+def _minutes(text: str) -> float:
+    try:
+        minutes = float(text)
+    except ValueError:
+        minutes = math.nan
+    if not minutes > 0:
+        raise argparse.ArgumentTypeError(f"{text} is no number above 0")
+    return minutes
 
 
 def words(arguments: Sequence[str]) -> list[str]:
@@ -189,6 +201,9 @@ def _study(chosen: argparse.Namespace) -> int:
             progress.say(f"stopped with {study.runs - len(store.missing)} of {study.runs} runs; to "
                          f"go on: {again}")
             return NOT_WHOLE
+        except SetupError:
+            store.discard()
+            raise
         except NotWritten as error:
             progress.say(f"{error}; what was written before is sound; to go on: {again}")
             return NOT_WHOLE
@@ -225,8 +240,10 @@ def _replay(chosen: argparse.Namespace) -> int:
 
 
 def _line(study: Study, chosen: argparse.Namespace, folder: Path) -> list[str]:
-    return [*study.command(chosen.index, folder), *(["--view"] if chosen.view else []),
-            *(["--log", chosen.log] if chosen.log else [])]
+    line = study.command(chosen.index, folder)
+    if chosen.view:  # by the clock, as nobody sees it otherwise
+        line = [*(word for word in line if word != "--fast"), "--view"]
+    return [*line, *(["--log", chosen.log] if chosen.log else [])]
 
 
 def _falsify(chosen: argparse.Namespace) -> int:
@@ -241,20 +258,28 @@ def _search(chosen: argparse.Namespace) -> int:
     progress = Progress(chosen.runs, quiet=chosen.quiet)
     try:
         with engine(chosen.workers, chosen.scheduler, progress.say) as workers:
+            try_to_write(folder)
             found = falsify.search(
-                study, workers, runs=chosen.runs, seconds=60 * (chosen.minutes or float("inf")),
+                study, workers, runs=chosen.runs, seconds=60 * chosen.minutes,
                 seed=chosen.seed, every=chosen.all, compare=chosen.compare, tick=progress.add)
     except KeyboardInterrupt:
         progress.say("stopped; nothing was written")
         return NOT_WHOLE
     finally:
         progress.end()
-    summary = falsify.write(folder, study, found)
+    status = NOT_HELD if found.failed else HELD
+    try:
+        summary = falsify.write(folder, study, found)
+    except NotWritten as error:
+        elsewhere = Path(tempfile.mkdtemp(prefix="repel-falsify-"))
+        summary = falsify.write(elsewhere, study, found)
+        progress.say(f"{error}; what the search found is in {elsewhere}")
+        status = NOT_WHOLE
     if chosen.json:
         print(json.dumps(summary, indent=2))
     elif not chosen.quiet:
         print(falsify.as_text(summary))
-    return NOT_HELD if summary["failed"] else HELD
+    return status
 
 
 def main(arguments: list[str] | None = None) -> int:

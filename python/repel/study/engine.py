@@ -21,15 +21,14 @@ import queue
 import signal
 import statistics
 import time
-import traceback
 import uuid
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
 
 from .._errors import SetupError, needed
 from .files import CannotRun
+from .measures import told
 from .store import decoded, encoded
 
 if TYPE_CHECKING:
@@ -110,9 +109,7 @@ def _rows(study: Study, jobs: Sequence[Job]) -> tuple[bytes, str]:
         except CannotRun as error:
             return b"", f"{name_of(job)}: {error}"
         except Exception as error:  # a bug of whatever kind: told where the study is told
-            where = traceback.extract_tb(error.__traceback__)[-1]
-            return b"", (f"{name_of(job)}: {type(error).__name__}: {error} "
-                         f"({Path(where.filename).name}:{where.lineno})")
+            return b"", f"{name_of(job)}: {told(error)}"
     return encoded(rows, study.columns), ""
 
 
@@ -177,6 +174,7 @@ class Cluster:
         self._cluster: Any = None
         self._client: Any = None
         self._threads, self._counted = -1, 0.0  # of all workers, and when
+        self._asked = workers or os.cpu_count() or 1  # of this machine
         self._checked = b""
         for name in list(logging.root.manager.loggerDict):
             if name.startswith(("distributed", "tornado")):  # what matters is said by this
@@ -185,14 +183,14 @@ class Cluster:
         self._config.__enter__()
         try:
             if scheduler is None:
-                self._start(workers or os.cpu_count() or 1)
+                self._start()
             else:
                 self._connect(scheduler)
         except BaseException:
             self.close()
             raise
 
-    def _start(self, workers: int) -> None:
+    def _start(self) -> None:
         has_pages = importlib.util.find_spec("bokeh") is not None
         # An interrupt from the terminal is this process's to answer. What starts while it is
         # blocked, and workers that are started later from there, do not get it. Python's tracker
@@ -203,10 +201,13 @@ class Cluster:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # of a port that is taken; it takes another one
                 self._cluster = self._dask.LocalCluster(
-                    n_workers=workers, threads_per_worker=1, processes=True, memory_limit=0,
+                    n_workers=self._asked, threads_per_worker=1, processes=True, memory_limit=0,
                     dashboard_address="127.0.0.1:8787" if has_pages else None,
                     silence_logs=logging.CRITICAL)
             self._client = self._dask.Client(self._cluster, set_as_default=False)
+        except (OSError, RuntimeError) as error:  # one was killed, as for want of memory
+            raise SetupError(f"the workers of this machine do not start: {error}; allowed: fewer "
+                             "of them by --workers, or 0 for none") from error
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
         if has_pages:
@@ -233,8 +234,8 @@ class Cluster:
         self._config.__exit__(None, None, None)
 
     def _workers(self) -> int:
-        """Threads of all workers, counted once a second; says when there are none. Raises
-        SetupError if the scheduler is gone."""
+        """Threads of all workers, counted once a second; says when there are none, and starts
+        those of this machine that are missing. Raises SetupError if the scheduler is gone."""
         if self._client.status == "running":
             if time.monotonic() - self._counted > 1.0:
                 with contextlib.suppress(OSError):
@@ -242,11 +243,20 @@ class Cluster:
                     self._counted = time.monotonic()
                     if self._threads == 0 and before != 0:
                         self._say(f"{self._where} has no worker; waiting for one")
+                    if self._cluster is not None and self._threads < self._asked:
+                        self._restart()
             if self._client.status == "running":
                 return max(self._threads, 0)
         raise SetupError(f"the scheduler of {self._where} is gone; allowed: the "
                          "address of a running one, or --workers; a study goes on with --resume, "
                          "nothing is lost")
+
+    def _restart(self) -> None:
+        """Dask gives up a worker that is away at the wrong moment, or is killed as it starts."""
+        for name, keeper in list(self._cluster.workers.items()):
+            if keeper.status.name in ("closed", "failed"):
+                self._cluster.workers.pop(name, None)
+        self._cluster.scale(self._asked)
 
     def made(self, study: Study, jobs: Sequence[Job]) -> Iterator[Made | None]:
         """As Engine.made. Waits for workers if there are none."""

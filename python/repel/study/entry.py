@@ -125,6 +125,9 @@ def read(text: str, file: str) -> Entry:
         line = mark.line + 1 if mark else 1
         raise SetupError(f"{file}:{line}: not YAML: {getattr(error, 'problem', error)}", file,
                          line) from error
+    except RecursionError as error:
+        raise SetupError(f"{file}: nested too deep; allowed: what docs/qualify.md has", file
+                         ) from error
     if node is None:
         raise SetupError(f"{file}: the file is empty; allowed: one study", file)
     return Entry(node, "the study", file)

@@ -69,6 +69,8 @@ class Found:
     minimal: Try | None  #: of a failure, with as much as possible set back
     set_back: list[str]  #: what that is
     runs: int  #: of the search, until it stopped
+    failed: int  #: of these, those that did not hold, for whatever reason
+    unmeasured: int  #: of those, the refused and the ones without a margin
     first_failure: int | None  #: the number of that run, from 1
     reduction_runs: int  #: for the minimal one
     restarts: int
@@ -151,7 +153,8 @@ class Search:
         self.made = 0
         self.first_failure: int | None = None
         self.worst: Try | None = None
-        self.failed = 0
+        self.failed = 0  # as a study counts them, with those that have no margin
+        self.unmeasured = 0
 
     def evaluate(self, runs: Sequence[Job]) -> list[Try]:
         """Makes the runs, of values or as the study draws them, in the order given."""
@@ -169,10 +172,11 @@ class Search:
             self.made += 1
             if self.worst is None or each.margin < self.worst.margin:
                 self.worst = each
+            self.failed += not each.row["held"]
+            self.unmeasured += math.isinf(each.margin) and not each.row["held"]
             if each.is_failure:
-                self.failed += 1
                 self.first_failure = self.first_failure or self.made
-        self._tick(0, sum(each.is_failure for each in tries))
+        self._tick(0, sum(not each.row["held"] for each in tries))
         return tries
 
 
@@ -223,8 +227,9 @@ def search(study: Study, engine: Engine, *, runs: int = 500, seconds: float = ma
         minimal, set_back = _reduced(study, reduction, trying.worst)
     return Found(
         worst=trying.worst, minimal=minimal, set_back=set_back, runs=trying.made,
-        first_failure=trying.first_failure, reduction_runs=reduction.made, restarts=restarts,
-        random_runs=random.made, random_failed=random.failed,
+        failed=trying.failed, unmeasured=trying.unmeasured, first_failure=trying.first_failure,
+        reduction_runs=reduction.made, restarts=restarts, random_runs=random.made,
+        random_failed=random.failed,
         random_least=random.worst.margin if random.worst else math.nan,
         random_first=random.first_failure, spans=space.spans, seed=seed)
 
@@ -295,7 +300,13 @@ def _reduced(study: Study, trying: Search, failure: Try) -> tuple[Try, list[str]
         half = len(names) // 2
         return shrink(names[half:], shrink(names[:half], of))
 
-    return shrink(at_once, failure), set_back
+    left, reduced = at_once, failure
+    while left:  # what is set back may make that possible for what was tried before
+        reduced = shrink(left, reduced)
+        before, left = left, [name for name in left if name not in set_back]
+        if left == before:
+            break
+    return reduced, set_back
 
 
 # What is said of it.
@@ -303,11 +314,10 @@ def _reduced(study: Study, trying: Search, failure: Try) -> tuple[Try, list[str]
 def write(folder: Path, study: Study, found: Found) -> dict[str, Any]:
     """Writes falsify.json and worst/replay.sh, for a failure also minimal/replay.sh, and returns
     the object of the former. Raises NotWritten."""
-    folder.mkdir(parents=True, exist_ok=True)
     summary: dict[str, Any] = {
         "study": study.name, "file": study.file, "seed": found.seed, "runs": found.runs,
         "failed": found.worst.is_failure, "first_failure": found.first_failure,
-        "restarts": found.restarts,
+        "not_held": found.failed, "not_measured": found.unmeasured, "restarts": found.restarts,
         "worst": _told(study, found.worst, folder / "worst"),
         "minimal": found.minimal and {
             **_told(study, found.minimal, folder / "minimal"), "set_back": found.set_back,
@@ -325,7 +335,6 @@ def write(folder: Path, study: Study, found: Found) -> dict[str, Any]:
 
 def _told(study: Study, run: Try, folder: Path) -> dict[str, Any]:
     """The run for JSON; writes what makes it again into the folder."""
-    folder.mkdir(parents=True, exist_ok=True)
     line = shlex.join(study.command(run.values, folder, run.hand))
     with whole(folder / "replay.sh") as file:
         file.write(f"#!/bin/sh\n{line}\n".encode())
@@ -343,6 +352,9 @@ def as_text(summary: dict[str, Any]) -> str:
     else:
         lines = [f"no failure found in {summary['runs']} runs; least margin "
                  f"{number(worst['margin'])}. This is no proof that there is none."]
+    if summary["not_measured"]:
+        lines.append(f"{summary['not_measured']} of {summary['runs']} runs were refused or without "
+                     "a measure; they did not hold either, but have no margin to search by")
     lines += _numbers(worst)
     if minimal:
         lines.append(f"set back to the scene as far as it still fails ({len(minimal['set_back'])} "
@@ -355,7 +367,8 @@ def as_text(summary: dict[str, Any]) -> str:
 
 
 def _numbers(run: dict[str, Any]) -> list[str]:
-    lines = [f"  {name} {number(value)}" for name, value in run["values"].items()]
+    lines = [f"  refused: {run['refused']}"] if run["refused"] else []
+    lines += [f"  {name} {number(value)}" for name, value in run["values"].items()]
     if run["hand"]:
         lines.append("  hand " + " ".join(number(x) for x in run["hand"]))
     lines += [f"  measured {name} {number(value)}" for name, value in run["measured"].items()]

@@ -8,6 +8,7 @@ import json
 import math
 import os
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from .. import _repel
 from .._errors import SetupError
 from .entry import Entry
 from .quantities import draws
+from .store import whole
 
 #: The columns of a table of a hand, see `teleop run --hand`.
 COLUMNS = ("time_s", "vx_m_s", "vy_m_s", "vz_m_s", "wx_rad_s", "wy_rad_s", "wz_rad_s")
@@ -151,6 +153,10 @@ def _rows_of_csv(path: str) -> list[list[float]]:
         raise SetupError(f"{path}:1: the first line is not that of a hand; allowed: "
                          f"{','.join(COLUMNS)}, and behind it possibly ,{','.join(LEVER_COLUMNS)}",
                          path, 1)
+    for line, row in enumerate(rows[1:], 2):
+        if len(row) != len(names):
+            raise SetupError(f"{path}:{line}: a row of {len(row)} numbers; allowed: {len(names)}, "
+                             "as the first line has names", path, line)
     try:
         return [[float(number) for number in row] for row in rows[1:]]
     except ValueError as error:
@@ -175,8 +181,8 @@ def _rows_of_recording(path: str) -> list[list[float]]:
 
 
 def write_table(rows: np.ndarray | tuple[tuple[float, ...], ...], path: str) -> None:
-    """Writes the rows for `teleop run --hand`, every number to its last bit."""
+    """Writes the rows for `teleop run --hand`, every number to its last bit. Raises NotWritten."""
     width = len(rows[0]) if len(rows) > 0 else len(COLUMNS)
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(",".join((COLUMNS + LEVER_COLUMNS)[:width]) + "\n")
-        file.writelines(",".join(repr(float(x)) for x in row) + "\n" for row in rows)
+    lines = [(COLUMNS + LEVER_COLUMNS)[:width], *([repr(float(x)) for x in row] for row in rows)]
+    with whole(Path(path)) as file:
+        file.write("".join(",".join(line) + "\n" for line in lines).encode())

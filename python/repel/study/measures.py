@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import os
+import traceback
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -116,14 +117,26 @@ class Measure:
         return bool(self.function) or self.name in OF_LOG
 
     def of(self, report: Mapping[str, Any], log: Recording | None) -> float | str:
-        if log is not None and self.needs_log:
-            return float(self._called(log, report))
-        return of_report(report, self.name)
+        """Without the log that it needs, nan."""
+        if not self.needs_log:
+            return of_report(report, self.name)
+        return math.nan if log is None else self._called(log, report)
 
     def _called(self, log: Recording, report: Mapping[str, Any]) -> float:
         if not self.function:
             return OF_LOG[self.name](log, report)
-        return _compiled(self.source, self.file, self.function)(log, report)
+        value: Any = _compiled(self.source, self.file, self.function)(log, report)
+        try:
+            return float(value)
+        except (TypeError, ValueError):
+            raise TypeError(f"{self.name}: {self.function} returned {value!r}; allowed: a number"
+                            ) from None
+
+
+def told(error: Exception) -> str:
+    """What went wrong in code, and where."""
+    where = traceback.extract_tb(error.__traceback__)[-1]
+    return f"{type(error).__name__}: {error} ({os.path.basename(where.filename)}:{where.lineno})"
 
 
 _programs: dict[str, dict[str, Any]] = {}
@@ -158,7 +171,10 @@ def _own(name: str, entry: Entry, folder: str) -> Measure:
     with open(path, encoding="utf-8") as text:
         source = text.read()
     try:
-        _compiled(source, path, function)
+        if not callable(_compiled(source, path, function)):
+            entry.fail(f"{name}: {function} of {path} is no function")
+    except SetupError:
+        raise
     except KeyError:
         entry.fail(f"{name}: {path} has no function {function}")
     except Exception as error:
@@ -220,14 +236,16 @@ def _bound(name: str, relation: str, entry: Entry, scale: Entry | None) -> Bound
                        "the name of the measure ends in")
         return Bound(name, relation, entry.text)
     limit = found[0]
+    if not math.isfinite(limit):
+        entry.fail(f"{name} {relation} '{entry.text}'; allowed: a finite number")
     usual = abs(limit) if limit else 1.0
-    return Bound(name, relation, limit, scale.number("", 1e-12) if scale else usual)
+    return Bound(name, relation, limit, scale.number("", 1e-12, 1e12) if scale else usual)
 
 
-def unknown(entry: Entry, measure: str, report: Mapping[str, Any]) -> SetupError:
+def unknown(entry: Entry, measure: str, report: Mapping[str, Any], where: str = "") -> SetupError:
     """The error for a name that is none."""
-    names = [*report, *OF_REPORT, *OF_LOG]
-    return SetupError(f"{entry.file}:{entry.line}: '{measure}' is not measured; "
+    names = [name for name in (*report, *OF_REPORT, *OF_LOG) if name != measure]
+    return SetupError(f"{entry.file}:{entry.line}: '{measure}' is not measured{where}; "
                       f"{did_you_mean(measure, names)} Allowed: a key of the report (with dots into "
                       f"it, as chatter.walls.force_rms_n), {', '.join([*OF_REPORT, *OF_LOG])}, or a "
                       "function that `measure` names", entry.file, entry.line)

@@ -21,7 +21,7 @@ from ..recording import read_recording
 from .entry import Entry, did_you_mean, number_and_unit, read
 from .files import CannotRun, anywhere, here, read_by, require_same
 from .hands import Hand, hand_of, write_table
-from .measures import Bound, Measure, bounds_of, measures_of, unknown
+from .measures import Bound, Measure, bounds_of, measures_of, told, unknown
 from .quantities import SAMPLINGS, Quantity, draws, quantity_of, shares
 
 _KEYS = ("name", "scenes", "runs", "seed", "seconds", "sampling", "with", "vary", "hand", "faults",
@@ -36,6 +36,8 @@ _SHORT = {"drive_delay": "robot.drive_delay"}
 _FILES = ("robot.urdf", "robot.mjcf", "robot.srdf")
 _FAULT, _FAULT_TIME = "fault", "fault_s"
 _OWN = ("index", "scene", "margin", "refused", "held")
+_BESIDE = 0.0013371  # of a distribution, from its middle; of no usual range a whole number
+_KNOTS = 1_000_000  # of a hand, at most, which takes a gigabyte
 
 Values = dict[str, float | str]
 Numbers = Sequence[float]
@@ -66,6 +68,8 @@ class Study:
         self.seconds = keys["seconds"].number("s", 1e-3, 1e6) if "seconds" in keys else 20.0
         self.sampling = keys["sampling"].word_of(SAMPLINGS) if "sampling" in keys else "random"
         self._scenes = _scenes_of(keys["scenes"], folder)
+        if not self._scenes:
+            keys["scenes"].fail("scenes is empty; allowed: one scene or more")
         self._fixed = _fixed_of(keys["with"]) if "with" in keys else ()
         drawn = [quantity_of(each) for each in keys["vary"].entries().values()] \
             if "vary" in keys else []
@@ -100,6 +104,12 @@ class Study:
         scenes = [each for each, _ in self.scenes]
         first = [Quantity("scene", kind="choice", choices=tuple(scenes), is_word=True)]
         return (*(first if len(scenes) > 1 else []), *self._drawn)
+
+    @property
+    def is_random(self) -> bool:
+        """Whether the runs are a random sample: not for designs and grids, which are chosen."""
+        is_drawn = any(each.kind != "grid" for each in self._drawn)
+        return self.sampling == "random" if is_drawn else self._hand.random is not None
 
     @property
     def measures(self) -> tuple[str, ...]:
@@ -150,15 +160,15 @@ class Study:
     def command(self, which: int | Mapping[str, float | str], folder: str | os.PathLike[str],
                 hand: Numbers | None = None) -> list[str]:
         """The command line that makes a run again, of an index or of values. Writes the table of
-        the hand, if there is one, to `folder`."""
+        the hand, if there is one, to `folder`. Raises NotWritten."""
         index = which if isinstance(which, int) else None
         values = self.values(which) if isinstance(which, int) else dict(which)
         table = self._table(index, hand)
         words = [program(), "run", self._scene_path(values), "--fast",
                  f"--seconds={self.seconds!r}", *self._words(values)]
         if table is not None:
-            os.makedirs(folder, exist_ok=True)
-            file = os.path.join(folder, "hand.csv" if index is None else f"hand_{index}.csv")
+            name = "hand.csv" if index is None else f"hand_{index}.csv"
+            file = os.path.abspath(os.path.join(folder, name))  # the line is for any folder
             write_table(table, file)
             words.append(f"--hand={file}")
         return words
@@ -263,40 +273,99 @@ class Study:
         """
         if not hasattr(_repel, "run_scene"):
             raise SetupError(f"this build runs no scenes: {how_to_have('teleop')}")
+        vary = keys["vary"].entries() if "vary" in keys else {}
+        for measure in self.measures:
+            if measure in _OWN:
+                _place_of(measure, keys).fail(f"'{measure}' is no measure, but another column of "
+                                              "the table")
         for each in self._drawn:
             if each.name in _OWN or each.name in self.measures:
                 root.fail(f"'{each.name}' cannot vary; it is another column of the table")
+            if each.name in (_FAULT, _FAULT_TIME) and each.name in vary and "faults" in keys:
+                vary[each.name].fail(f"{each.name} is drawn by faults, too; allowed: one of both")
+            if each.name == _FAULT_TIME and (each.is_word or each.unit not in ("", "s")):
+                vary[each.name].fail(f"{each.name} is no time in s; allowed: numbers in s")
         reports = [run(scene, seconds=0.0, arguments=self._words({})) for _, scene in self.scenes]
         for report in reports:
             self._require_measured(report, keys)
-        trials: list[Values] = [{each.name: each.at(0.5)} for each in self._drawn
-                                if each.name not in (_FAULT, _FAULT_TIME)]
-        trials += [{each.name: choice} for each in self._drawn for choice in each.choices
-                   if each.name != _FAULT and len(each.choices) <= 100]
-        for trial in trials:
-            self._try(trial, keys)
+        self._measures = tuple(dataclasses.replace(each, is_word=isinstance(
+            each.of(reports[-1], None), str)) for each in self._measures)
+        self._check_bounds(reports[-1], keys)
+        self._check_hand(keys)
+        self._try_own(keys)
+        for each in self._drawn:
+            if each.name in vary:
+                few = each.choices if len(each.choices) <= 100 else ()
+                for value in few or (each.at(0.5),):
+                    self._try({each.name: value}, vary[each.name], keys)
+                if not each.choices:
+                    self._try_beside(each, vary[each.name], keys)
 
-    def _try(self, values: Values, keys: Mapping[str, Entry]) -> None:
+    def _try(self, values: Values, entry: Entry, keys: Mapping[str, Entry]) -> None:
         for name, scene in self.scenes:
+            what = f"{entry.name} of {name} set to {values[entry.name]}"
             try:
-                run(scene, seconds=0.0, arguments=self._words(values))
+                report = run(scene, seconds=0.0, arguments=self._words(values))
             except SetupError as error:
-                what = next(iter(values))
-                entry = keys["vary"].entries()[what]
-                others = "" if "." in what else (
+                others = "" if "." in entry.name else (
                     f" (or an option of a run: {', '.join([*_OPTIONS, *_FLAGS, 'rate'])})")
-                entry.fail(f"{what} of {name} set to {values[what]}: {error}{others}")
+                entry.fail(f"{what}: {error}{others}")
+            self._require_measured(report, keys, f" with {what}")
 
-    def _require_measured(self, report: Mapping[str, Any], keys: Mapping[str, Entry]) -> None:
-        checked = []
+    def _try_beside(self, quantity: Quantity, entry: Entry, keys: Mapping[str, Entry]) -> None:
+        """The middle may be the only value that is whole, or 0: one beside it has to do, too."""
+        try:
+            self._try({quantity.name: quantity.at(0.5 - _BESIDE)}, entry, keys)
+        except SetupError:
+            self._try({quantity.name: quantity.at(0.5 + _BESIDE)}, entry, keys)
+
+    def _require_measured(self, report: Mapping[str, Any], keys: Mapping[str, Entry],
+                          where: str = "") -> None:
         for each in self._measures:
             try:
-                is_word = not each.needs_log and isinstance(each.of(report, None), str)
+                each.of(report, None)
             except KeyError as error:
-                where = keys["hold"].entries().get(each.name) or keys.get("measure", keys["hold"])
-                raise unknown(where, each.name, report) from error
-            checked.append(dataclasses.replace(each, is_word=is_word))
-        self._measures = tuple(checked)
+                raise unknown(_place_of(each.name, keys), each.name, report, where) from error
+
+    def _check_bounds(self, report: Mapping[str, Any], keys: Mapping[str, Entry]) -> None:
+        """A word never equals a number."""
+        values = {each.name: each.of(report, None) for each in self._measures}
+        for bound in self.bounds:
+            value = values[bound.measure]
+            if isinstance(value, str) and not isinstance(bound.limit, str):
+                _place_of(bound.measure, keys).fail(
+                    f"{bound.measure} {bound.relation} {bound.limit:g}, but it is a word, as "
+                    f"'{value}'; allowed: a word that it equals")
+            if isinstance(bound.limit, str) and not isinstance(value, str) and value == value:
+                _place_of(bound.measure, keys).fail(
+                    f"{bound.measure} equals '{bound.limit}', but it is a number; allowed: a "
+                    "number without a unit, of yes and no 1 and 0")
+
+    def _check_hand(self, keys: Mapping[str, Entry]) -> None:
+        drawn = self._hand.random
+        if drawn and drawn.knots(self.seconds) > _KNOTS:
+            keys["hand"].fail(f"a random hand of {drawn.bandwidth:g} Hz for {self.seconds:g} s has "
+                              f"{drawn.knots(self.seconds)} knots; allowed: {_KNOTS}, with a lower "
+                              "bandwidth or fewer seconds")
+        try:
+            for _, scene in self.scenes if self._hand.table else ():
+                run(scene, seconds=0.0, hands=[self._hand.table], arguments=self._words({}))
+        except SetupError as error:
+            keys["hand"].fail(str(error))
+
+    def _try_own(self, keys: Mapping[str, Entry]) -> None:
+        """Calls functions of one's own: with a short log, or if that is not enough, a whole one."""
+        if not any(each.function for each in self._measures):
+            return
+        try:
+            self._measured({}, self._hand.table, min(0.1, self.seconds))
+        except Exception:
+            try:
+                self._measured({}, self._hand.table, self.seconds)
+            except SetupError:
+                raise
+            except Exception as error:
+                keys["measure"].fail(told(error))
 
     def _beside(self, name: str, text: str) -> str:
         """Robot files beside the study by their whole path: a scene would look beside itself."""
@@ -399,6 +468,11 @@ def _refuse_replaced(entry: Entry, sets: Mapping[str, Sequence[Sequence[str]]]) 
 def _key_of(name: str) -> str:
     """What a name sets: two may set the same."""
     return _OPTIONS.get(name, _SHORT.get(name, name))
+
+
+def _place_of(measure: str, keys: Mapping[str, Entry]) -> Entry:
+    """Where a measure is named."""
+    return keys["hold"].entries().get(measure) or keys.get("measure", keys["hold"])
 
 
 def _option(name: str, text: str) -> list[str]:

@@ -119,7 +119,7 @@ def summary_of(study: Study, seen: Seen) -> dict[str, Any]:
     return {
         "study": study.name, "file": study.file, "runs": seen.runs, "failed": seen.failed,
         "refused": seen.refused, "confidence": CONFIDENCE,
-        "upper_bound": upper_bound(seen.failed, seen.runs),
+        "upper_bound": upper_bound(seen.failed, seen.runs) if study.is_random else None,
         "bounds": [{"measure": bound.measure, "unit": bound.unit, "relation": bound.relation,
                     "limit": bound.limit, "failed": failed, "not_measured": unmeasured,
                     "least_margin": plain(least)}
@@ -139,12 +139,13 @@ def _told(study: Study, row: dict[str, Any]) -> dict[str, Any]:
             "replay": shlex.join(line)}
 
 
-def sentence(failed: int, refused: int, runs: int, bound: float) -> str:
-    """What so many failures prove."""
+def sentence(failed: int, refused: int, runs: int, bound: float | None) -> str:
+    """What so many failures prove; bound: None where the runs are no random sample."""
     of_these = f" ({refused} refused at set-up)" if refused else ""
-    return (f"{runs - failed} of {runs} runs held, {failed} did not{of_these}. With 95 % "
-            f"confidence at most {percent(bound)} of such runs fail, for hands and values drawn "
-            "like these.")
+    proves = ("They are no random sample, so no share of others follows." if bound is None else
+              f"With 95 % confidence at most {percent(bound)} of such runs fail, for hands and "
+              "values drawn like these.")
+    return f"{runs - failed} of {runs} runs held, {failed} did not{of_these}. {proves}"
 
 
 def percent(share: float) -> str:
@@ -173,7 +174,8 @@ def as_text(summary: dict[str, Any]) -> str:
     lines = [sentence(summary["failed"], summary["refused"], summary["runs"],
                       summary["upper_bound"])]
     for bound in summary["bounds"]:
-        lines.append(f"  {demand(bound)}: {bound['failed']} did not hold, least margin "
+        unmeasured = f"{bound['not_measured']} not measured, " if bound["not_measured"] else ""
+        lines.append(f"  {demand(bound)}: {bound['failed']} did not hold, {unmeasured}least margin "
                      f"{number(bound['least_margin'])}")
     worst = summary["worst"]
     lines.append(f"worst: run {worst['index']}, {_outcome(worst)}")
@@ -227,6 +229,7 @@ def is_choice(quantity: Quantity) -> bool:
 
 _WIDTH, _HEIGHT = 520, 260
 _LEFT, _RIGHT, _TOP, _BOTTOM = 62, 12, 10, 36
+_LETTER, _ASLANT = 6.5, 50  # wide in a label, at most; below for labels that stand aslant
 
 
 @dataclasses.dataclass
@@ -284,21 +287,27 @@ def words_of(name: str, choices: Sequence[Any], values: Sequence[Any]) -> Axis:
         middle = np.array([place[word] for word in words.tolist()])
         return np.asarray(middle + 0.6 * beside / len(known))
 
-    return Axis(name, at, [(place[word], str(word)[:14]) for word in known[:12]])
+    every = -(-len(known) // 12)  # of more there is no room for the names
+    return Axis(name, at, [(place[word], str(word)[:14]) for word in known[::every]])
 
 
 def _frame(x: Axis, y: Axis, inside: str, label: str) -> str:
     wide, high = _WIDTH - _LEFT - _RIGHT, _HEIGHT - _TOP - _BOTTOM
-    parts = [f"<svg viewBox='0 0 {_WIDTH} {_HEIGHT}' role='img' aria-label='{_text(label)}'>"]
+    # Words that do not fit beside each other stand aslant.
+    is_tight = _LETTER * max((len(text) for _, text in x.ticks), default=0) * len(x.ticks) > wide
+    tall = _HEIGHT + (_ASLANT if is_tight else 0)
+    parts = [f"<svg viewBox='0 0 {_WIDTH} {tall}' role='img' aria-label='{_text(label)}'>"]
     for at, text in x.ticks:
-        px = _LEFT + at * wide
+        px, below = _LEFT + at * wide, _TOP + high + 14
+        how = (f"text-anchor='end' transform='rotate(-40 {px:.1f} {below})'" if is_tight else
+               "text-anchor='middle'")
         parts.append(f"<path class='grid' d='M{px:.1f} {_TOP}v{high}'/><text x='{px:.1f}' "
-                     f"y='{_TOP + high + 14}' text-anchor='middle'>{_text(text)}</text>")
+                     f"y='{below}' {how}>{_text(text)}</text>")
     for at, text in y.ticks:
         py = _TOP + (1 - at) * high
         parts.append(f"<path class='grid' d='M{_LEFT} {py:.1f}h{wide}'/><text x='{_LEFT - 5}' "
-                     f"y='{py + 4:.1f}' text-anchor='end'>{_text(text)}</text>")
-    parts.append(f"<text x='{_LEFT + wide / 2}' y='{_HEIGHT - 5}' text-anchor='middle'>"
+                     f"y='{py + 4:.1f}' text-anchor='end'>{_text(text[:9])}</text>")
+    parts.append(f"<text x='{_LEFT + wide / 2}' y='{tall - 5}' text-anchor='middle'>"
                  f"{_text(x.name)}</text><text x='11' y='{_TOP + high / 2}' text-anchor='middle' "
                  f"transform='rotate(-90 11 {_TOP + high / 2})'>{_text(y.name)}</text>")
     return "".join([*parts, inside, "</svg>\n"])
@@ -403,8 +412,8 @@ pre { background: var(--tile); padding: 1em; overflow: auto; font-size: .85em; }
 """
 
 _LIMITS = """It says nothing of values outside of what was drawn, nothing of hands that move
-otherwise, nothing of what the simulation leaves out, and what fails more rarely than this share may
-not be among these runs: <code>repel falsify</code> searches for it."""
+otherwise, nothing of what the simulation leaves out, and what fails rarely may not be among these
+runs: <code>repel falsify</code> searches for it."""
 
 
 def _text(text: Any) -> str:
@@ -433,23 +442,31 @@ def page(study: Study, seen: Seen, summary: dict[str, Any]) -> str:
         f"<title>{title} - repel study</title>\n<style>{_STYLE}</style>\n</head>\n<body>\n"
         f"<h1>{title}</h1>\n",
         _what_held(summary), _worst(study, summary), _what_matters(study, seen),
-        _convergence(seen), _where_from(study), "</body>\n</html>\n"])
+        _convergence(study, seen), _where_from(study), "</body>\n</html>\n"])
 
 
 def _what_held(summary: dict[str, Any]) -> str:
-    failed, runs = summary["failed"], summary["runs"]
+    failed, runs, bound = summary["failed"], summary["runs"], summary["upper_bound"]
     tiles = {"runs": str(runs), "did not hold": str(failed),
              "refused at set-up": str(summary["refused"]),
-             "at most fail, 95 %": percent(summary["upper_bound"]),
+             **({} if bound is None else {"at most fail, 95 %": percent(bound)}),
              "least margin": number(summary["worst"]["margin"])}
-    rows = [[_text(demand(bound)), "<span class='no'>NO</span>" if bound["failed"] else
-             "<span class='yes'>yes</span>", str(bound["failed"]), str(bound["not_measured"]),
-             number(bound["least_margin"])] for bound in summary["bounds"]]
-    says = sentence(failed, summary["refused"], runs, summary["upper_bound"])
+    rows = [[_text(demand(each)), _answer(each), str(each["failed"]), str(each["not_measured"]),
+             number(each["least_margin"])] for each in summary["bounds"]]
+    says = sentence(failed, summary["refused"], runs, bound)
     return (f"<p class='says'>{_text(says)}</p>\n<p class='soft'>{_LIMITS}</p>\n<dl class='tiles'>"
             + "".join(f"<div><dt>{name}</dt><dd>{_text(value)}</dd></div>"
                       for name, value in tiles.items()) + "</dl>\n<h2>What held</h2>\n"
             + _table(["bound", "held", "runs that did not", "not measured", "least margin"], rows))
+
+
+def _answer(bound: dict[str, Any]) -> str:
+    """Whether a bound held in all runs; what was not measured did not, for what is known."""
+    if bound["failed"]:
+        return "<span class='no'>NO</span>"
+    if bound["not_measured"]:
+        return "<span class='no'>not known</span>"
+    return "<span class='yes'>yes</span>"
 
 
 def _worst(study: Study, summary: dict[str, Any]) -> str:
@@ -484,7 +501,7 @@ def _what_matters(study: Study, seen: Seen) -> str:
     legend = (f"<p class='soft'>{shown}. <b class='failed'>Did not hold</b>, <b class='close'>"
               "held, the closest fifth of those drawn</b>, <b class='held'>held</b>.</p>\n")
     text = "<h2>What matters</h2>\n" + legend
-    if len(drawn) > 1:
+    if len(drawn) > 1 and shared[drawn[1].name] >= 0.005:  # 1 %, as it is written
         x, y = drawn[:2]
         text += _figure(f"The two that matter most: {x.name} and {y.name}", cloud.chart(
             cloud.axis(x), cloud.axis(y), cloud.values(x), cloud.values(y),
@@ -504,11 +521,12 @@ def _what_matters(study: Study, seen: Seen) -> str:
                if rest else ""))
 
 
-def _convergence(seen: Seen) -> str:
+def _convergence(study: Study, seen: Seen) -> str:
     runs = np.array([each[0] for each in seen.course], float)
     failed = np.array([each[1] for each in seen.course])
     least = np.array([each[2] for each in seen.course])
-    bound = np.array([upper_bound(int(f), int(n)) for f, n in zip(failed, runs)])
+    bound = np.array([upper_bound(int(f), int(n)) if study.is_random else math.nan
+                      for f, n in zip(failed, runs)])
     share = failed / runs
     x = axis_of("runs", runs, True)
     y = axis_of("share", np.concatenate([bound, share[share > 0]]), True)
@@ -516,8 +534,9 @@ def _convergence(seen: Seen) -> str:
     both = (_line("close", _pixels(x, y, runs, bound))
             + _line("failed", _pixels(x, y, runs[some], share[some])))
     low = axis_of("least margin", least)
+    largest = ", and the largest that 95 % confidence leaves" if study.is_random else ""
     return ("<h2>Convergence</h2>\n<div class='charts'>"
-            + _figure("Failures: their share (red), and the largest that 95 % confidence leaves",
+            + _figure(f"Failures: their share (red){largest}",
                       _frame(x, y, both, "share of failures over runs"))
             + _figure("Least margin so far", _frame(
                 x, low, _zero(x, low) + _line("held", _pixels(x, low, runs, least)),

@@ -41,10 +41,11 @@ class NotWritten(Exception):
 
 @contextlib.contextmanager
 def whole(path: Path) -> Iterator[IO[bytes]]:
-    """A file to write that takes its place once it is whole. Raises NotWritten, and then leaves
-    what was in its place."""
+    """A file to write that takes its place once it is whole, in a folder that is made for it.
+    Raises NotWritten, and then leaves what was in its place."""
     beside = path.with_name(f".{path.name}.unfinished")
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         with open(beside, "wb") as file:
             yield file
             file.flush()
@@ -55,6 +56,14 @@ def whole(path: Path) -> Iterator[IO[bytes]]:
     finally:
         with contextlib.suppress(OSError):
             beside.unlink(missing_ok=True)
+
+
+def try_to_write(folder: Path) -> None:
+    """Makes the folder. Raises NotWritten if a file of some size cannot be written there."""
+    trial = folder / ".trial"
+    with whole(trial) as file:
+        file.write(bytes(1 << 16))
+    trial.unlink()
 
 
 def encoded(rows: Sequence[Mapping[str, Any]], columns: Sequence[tuple[str, str]]) -> bytes:
@@ -81,6 +90,12 @@ def schema_of(columns: Sequence[tuple[str, str]], metadata: Mapping[str, str] | 
     kinds = {"int64": pa.int64(), "float64": pa.float64(), "string": pa.string(),
              "bool": pa.bool_()}
     return pa.schema([pa.field(name, kinds[kind]) for name, kind in columns], metadata)
+
+
+def _unreadable(file: Path, error: Exception) -> SetupError:
+    why = " ".join(str(error).split())  # Arrow's has lines
+    return SetupError(f"{file}: cannot be read: {why}; allowed: to delete it, as --resume then "
+                      "makes its runs again", str(file))
 
 
 class Store:
@@ -125,7 +140,8 @@ class Store:
         for file in there:
             self._count(file)
         copy = self.folder / "study.yaml"
-        if not there and copy.exists() and copy.read_text() != self._study.text:
+        text = self._study.text.encode()
+        if not there and copy.exists() and copy.read_bytes() != text:
             raise SetupError(f"{copy}: is another study; allowed: another folder", str(copy))
         if self.results.exists():  # and has all that the parts had
             shutil.rmtree(self._parts, ignore_errors=True)
@@ -134,13 +150,15 @@ class Store:
                 self._parts.mkdir(exist_ok=True)
                 for unfinished in self._parts.glob(".*.unfinished"):
                     unfinished.unlink()
-                if self.results.exists():  # of fewer runs
+                if self.results.exists():  # of fewer runs, as what was said of them
                     os.replace(self.results, self._parts / "0.parquet")
+                    for said in ("summary.json", "report.html"):
+                        (self.folder / said).unlink(missing_ok=True)
             except OSError as error:
                 raise NotWritten(self._parts, error) from error
         if not copy.exists():
             with whole(copy) as out:
-                out.write(self._study.text.encode())
+                out.write(text)
 
     def _files(self) -> list[Path]:
         if self.results.exists():
@@ -166,8 +184,7 @@ class Store:
         except (OSError, ValueError) as error:  # Arrow's are both
             if isinstance(error, SetupError):
                 raise
-            raise SetupError(f"{file}: cannot be read: {error}; without it --resume makes its runs "
-                             "again", str(file)) from error
+            raise _unreadable(file, error) from error
 
     @property
     def missing(self) -> Sequence[int]:
@@ -233,12 +250,21 @@ class Store:
             pieces = []
             for path, number, least, largest in spans:
                 if least < end and largest >= first:
-                    piece = self._pq.ParquetFile(path).read_row_group(number)
+                    try:
+                        piece = self._pq.ParquetFile(path).read_row_group(number)
+                    except (OSError, ValueError) as error:
+                        raise _unreadable(path, error) from error
                     index = piece["index"].to_numpy()
                     pieces.append(piece.filter((index >= first) & (index < end)))
             table = pa.concat_tables(pieces).sort_by("index").combine_chunks()
             assert np.array_equal(table["index"].to_numpy(), np.arange(first, end))
             yield table.replace_schema_metadata(self._schema.metadata)
+
+    def discard(self) -> None:
+        """Takes away what stands for a study of which no run was made."""
+        if not self._files():
+            shutil.rmtree(self._parts, ignore_errors=True)
+            (self.folder / "study.yaml").unlink(missing_ok=True)
 
     def close(self) -> None:
         """Lets the folder go. Rows that are in no part yet are dropped."""
