@@ -330,13 +330,13 @@ TEST(LaneEvaluator, FewPairsAreEvaluatedSingly) {
 // Lanes take memory, so that there are fewer than pairs where these are many.
 TEST(LaneEvaluator, PairsWithoutALaneAreEvaluatedSingly) {
   test::NearPairs scene(3, seed);
-  for (int i = 0; i < 2600; ++i)
+  for (int i = 0; i < 1600; ++i)
     scene.add([](families::Rng&) { return Shape::box({0.1, 0.1, 0.1}); });
   EveryPair every(scene.world, true);
   const std::vector<int> fitting = fitting_slots(every);
   const int all = static_cast<int>(fitting.size());
   const int more = every.lanes.to_add(all);
-  EXPECT_EQ(more, 1024);
+  EXPECT_EQ(more, 256);
   ASSERT_GT(all, more) << "of " << every.count();
   for (int i = 0; i < more; ++i) every.lanes.add(fitting[static_cast<std::size_t>(i)], every.poses);
   EXPECT_EQ(every.lanes.to_add(all - more), 0);

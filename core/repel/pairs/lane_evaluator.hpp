@@ -220,7 +220,7 @@ class LaneEvaluator {
   /// A lane takes more memory than all else that is known of a pair, and where there are thousands
   /// of pairs, few are within range at one time.
   [[nodiscard]] static int lanes_for(int slots) noexcept {
-    return std::min(slots, std::max(1024, slots / 8));
+    return std::min(slots, std::max(256, slots / 8));
   }
 
   [[nodiscard]] int lane_of(int slot) const noexcept { return memory_->tracking(slot).lane; }
