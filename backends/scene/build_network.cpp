@@ -25,15 +25,16 @@ namespace {
 /// [rad/s] at which a line turns a tool at most: the damper of a coupling is chosen for it.
 constexpr double fastest_turning = 1.0;
 
-/// Line of the module whose name occurs first in `text`; 0 if none does.
-int line_of_named(const std::vector<Module>& modules, const std::string& text) {
+/// Line of the entry whose name occurs first in `text`; 0 if none does.
+template <class Entry>
+int line_of_named(const std::vector<Entry>& entries, const std::string& text) {
   std::size_t first = std::string::npos;
   int line = 0;
-  for (const Module& module : modules) {
-    const std::size_t at = text.find("'" + module.name + "'");
+  for (const Entry& entry : entries) {
+    const std::size_t at = text.find("'" + entry.name + "'");
     if (at >= first) continue;
     first = at;
-    line = module.line;
+    line = entry.line;
   }
   return line;
 }
@@ -135,14 +136,14 @@ void require_modules(const Scene& scene, const ArmSetup& setup) {
   if (!(scene.obstacles.empty() && scene.partners.empty()) &&
       !brings(setup, network::Walls::tool)) {
     throw SetupError("network: there are obstacles and no module 'obstacle' through which they act",
-                     scene.file);
+                     scene.file, setup.network.line);
   }
   const auto& links = setup.robot.links;
   if (links && !links->empty() && !feels_links(setup)) {
     throw SetupError(
         "robot: there are links to keep off the obstacles and no module 'arm_obstacle' in the "
         "network through which they feel them",
-        scene.file);
+        scene.file, setup.network.line);
   }
 }
 
@@ -215,7 +216,7 @@ network::Network build_network(const Scene& scene, const ArmSetup& setup, const 
 SetupError located(const Scene& scene, const SetupError& error) {
   const std::string what = error.what();
   if (!error.file().empty()) return error;
-  int line = 0;
+  int line = what.starts_with("wall too stiff: ") ? line_of_named(scene.obstacles, what) : 0;
   for (std::size_t i = 0; i <= scene.partners.size() && line == 0; ++i) {
     if (what.starts_with("network: "))
       line = line_of_named(scene.arm_setup(i).network.modules, what);

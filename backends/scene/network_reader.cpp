@@ -61,6 +61,7 @@ Network detail::network_of(const Value* value, const ModuleKinds& kinds) {
   if (value != nullptr) {
     Network network = listed_in(*value, kinds);
     if (network.modules.empty()) value->fail("'network' has no module; allowed: 1 or more");
+    network.line = value->line();
     return network;
   }
   std::string text;

@@ -103,8 +103,8 @@ std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws, const S
     }
     for (Part& part : parts_of(entry, map, shapes)) {
       obstacles.push_back({std::move(part.name), std::move(part.shape), std::move(part.kind),
-                           part.X_BP, law_called(laws, map), motion_of(map),
-                           std::move(part.shown)});
+                           part.X_BP, law_called(laws, map), motion_of(map), std::move(part.shown),
+                           entry.line()});
     }
     require_new(names, map);
   }

@@ -102,6 +102,7 @@ RobotChoice robot_of(const Value& value, const Laws& laws) {
   if (const Value* payload = map.find("payload")) read_payload(*payload, robot);
   if (const Value* admittance = map.find("admittance")) {
     read_admittance(*admittance, robot.admittance.emplace());
+    robot.admittance_line = admittance->line();
   }
   map.read("drive_delay", robot.drive_delay);
   if (const Value* errors = map.find("sensor_errors")) read_sensor_errors(*errors, robot.sensor);

@@ -137,9 +137,9 @@ std::vector<double> Value::numbers(const Rule& rule, std::size_t least, std::siz
   if (!values || values->size() < least || values->size() > most) {
     const std::string count = least == most ? std::to_string(most)
                                             : std::to_string(least) + " to " + std::to_string(most);
-    const std::string units = units_text(rule.units);
-    fail_with_value(count + (most == 1 ? " number" : " numbers") +
-                    (units.empty() ? ", no unit" : ", then the unit " + units) + "; " +
+    const bool is_bare = rule.units.front().name.empty();
+    fail_with_value(count + (most == 1 ? " number, " : " numbers, ") +
+                    (is_bare ? "no unit" : "then the unit ") + units_text(rule.units) + "; " +
                     range_text(rule));
   }
   for (const double value : *values) {

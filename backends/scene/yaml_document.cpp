@@ -52,10 +52,29 @@ class Events {
   [[noreturn]] void fail() const {
     std::string what = "not YAML: ";
     what += parser_.problem == nullptr ? "no memory to read it" : parser_.problem;
-    if (parser_.context != nullptr) what.append(" ").append(parser_.context);
+    if (parser_.context != nullptr) {
+      what.append(" ").append(parser_.context);
+      // The colour of a part: what stands behind it is lost to the comment, the '}' with it.
+      const std::string_view open = lines(parser_.context_mark.line, parser_.problem_mark.line);
+      if (open.find(": #") != std::string_view::npos) {
+        what += " from line " + std::to_string(line_of(parser_.context_mark)) +
+                ", where a # begins a comment; allowed: \"#rrggbb\", in quotes";
+      }
+    }
     const int line = parser_.error == YAML_READER_ERROR ? line_at(text_, parser_.problem_offset)
                                                         : line_of(parser_.problem_mark);
     throw SetupError(what, file_, line);
+  }
+
+  /// Those from `first` up to `last`, from 0, without the latter.
+  [[nodiscard]] std::string_view lines(std::size_t first, std::size_t last) const {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    for (std::size_t line = 0; line < last && end < text_.size(); ++line) {
+      if (line == first) begin = end;
+      end = std::min(text_.find('\n', end), text_.size() - 1) + 1;
+    }
+    return text_.substr(begin, end - begin);
   }
 
   std::string_view text_;
@@ -172,6 +191,10 @@ class Builder {
     if (text.size() > input_limits.text_bytes) {
       fail(event, "a text of " + std::to_string(text.size()) + " bytes; allowed: up to " +
                       std::to_string(input_limits.text_bytes));
+    }
+    // It would end the name of a file and the message of an exception.
+    if (text.find('\0') != std::string_view::npos) {
+      fail(event, "a text with the character of code 0; allowed: text without it");
     }
     return std::string(text);
   }

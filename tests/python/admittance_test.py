@@ -49,7 +49,7 @@ class Broken(Gantry):
 
 @pytest.mark.parametrize("change, error, said", [
     ({"admittance": repel.Admittance(response=0.2)}, repel.SetupError,
-     "admittance response is 0.2 s; allowed: 0 to 0.1"),
+     "admittance response at 1000 Hz is 0.2 s; allowed: 0 to 0.1"),
     ({"admittance": repel.Admittance(inertia=[1.0])}, repel.SetupError,
      "admittance of 1 joints for an arm of 3"),
     ({"admittance": repel.Admittance(), "kinematics": Broken()}, RuntimeError, "no masses here"),

@@ -286,8 +286,13 @@ TEST(SceneNetwork, ALimitOfTheWrongKindIsRefusedWithItsLine) {
 TEST(SceneNetwork, ObstaclesNeedTheModuleThroughWhichTheyAct) {
   EXPECT_NE(refusal("  - {module: torque_arm}\n  - {module: multiplex}\n  - {module: kbb2}\n"
                     "  - {module: puma_kin}\n  - {module: puma_joints}\n")
-                .find("no module 'obstacle'"),
+                .find("test.yaml:9: network: there are obstacles and no module 'obstacle'"),
             std::string::npos);
+}
+
+TEST(SceneNetwork, AWallThatIsTooStiffHasTheLineOfItsObstacle) {
+  const SetupError error = located(parsed(base_scene), SetupError("wall too stiff: 'wall': so"));
+  EXPECT_EQ(error.line(), 7) << error.what();
 }
 
 }  // namespace network_test

@@ -92,6 +92,15 @@ TEST(Paint, ThatIsNoneIsRefusedWithItsLineAndWhatIsAllowed) {
     EXPECT_NE(said.find("scenes/test.yaml:7: 'opacity'"), std::string::npos) << said;
     EXPECT_NE(said.find("0.01 to 1"), std::string::npos) << said;
   }
+  EXPECT_NE(
+      complaint(changed("size: 1 2 3 m", "size: 1 2 3 m, opacity: x")).find(", no unit or %;"),
+      std::string::npos);
+}
+
+TEST(Paint, AColourWithoutItsQuotesIsSaidToBeAComment) {
+  const std::string said =
+      complaint(changed("size: 1 2 3 m", "size: 1 2 3 m, color: #ff0000") + "rate: 400 Hz\n");
+  EXPECT_NE(said.find("from line 7, where a # begins a comment"), std::string::npos) << said;
 }
 
 TEST(Paint, IsInTheSchema) {

@@ -336,6 +336,10 @@ TEST(SceneError, BrokenYamlIsRefusedAtItsLine) {
   expect_refused(base_scene + "name: *nowhere\n", 8, {"not YAML"});
 }
 
+TEST(SceneError, ATextWithANulIsRefusedWhole) {
+  expect_refused(base_scene + "network: [{module: \"\\0\"}]\n", 8, {"code 0", "allowed"});
+}
+
 TEST(SceneError, ASecondDocumentIsRefused) {
   expect_refused(base_scene + "---\nname: b\n", 9, {"a second YAML document"});
 }

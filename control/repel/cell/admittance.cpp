@@ -67,7 +67,8 @@ namespace repel {
 ArmDescription admitted(ArmDescription arm, const AdmittanceOptions& options, double period) {
   checked("admittance rest time", options.rest_time, 1e-3, 1e3, "s");
   checked("admittance acceleration", options.acceleration, 0.0, 1e4, "rad/s^2");
-  checked("admittance response", options.response, 0.0, 100.0 * period, "s");
+  checked("admittance response at " + to_text(1.0 / period, 6) + " Hz", options.response, 0.0,
+          100.0 * period, "s");
   if (!arm.kinematics) throw SetupError("an arm needs kinematics");
   std::vector<double> inertia = detail::shown_inertia(arm, options);
   std::vector<double> effort;

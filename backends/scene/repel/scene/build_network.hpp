@@ -45,7 +45,8 @@ struct NetworkHalf {
                                              const ArmModel& arm, double rate_hz);
 
 /// Adds to an error about the cell of a scene the file and, if the message names a module of a
-/// network, its line. An error that already names its file is returned unchanged.
+/// network or a wall that is too stiff, its line. An error that already names its file is returned
+/// unchanged.
 [[nodiscard]] SetupError located(const Scene& scene, const SetupError& error);
 
 }  // namespace repel::scene

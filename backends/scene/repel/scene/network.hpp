@@ -24,6 +24,7 @@ struct Module : ReadModule {
 struct Network {
   std::vector<Module> modules;                                ///< from the operator to the robot
   network::GainCheck gain_check = network::GainCheck::error;  ///< of the obstacle module
+  int line = 0;                                               ///< of the file; 0: it is the default
 };
 
 }  // namespace repel::scene

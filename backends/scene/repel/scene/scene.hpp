@@ -55,6 +55,7 @@ struct Obstacle {
   ForceLaw law;                  ///< between it and every part of every arm
   std::optional<ReciprocatingMotion> motion;  ///< none: it is fixed
   Shown shown{};                              ///< no force depends on it
+  int line = 0;                               ///< of the file
 };
 
 /// How a file describes a model.
@@ -146,7 +147,8 @@ struct RobotChoice {
   int drive_delay = 0;        ///< [ticks] see TeleoperatorOptions::drive_delay
   /// Of an arm that takes positions or rates; none: it takes torques.
   std::optional<AdmittanceOptions> admittance;
-  SensorErrors sensor;  ///< of the simulated force sensor
+  int admittance_line = 0;  ///< with the admittance in the file
+  SensorErrors sensor;      ///< of the simulated force sensor
 };
 
 /// Limits on the work of the distance queries in one tick.

@@ -169,7 +169,11 @@ DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gra
     ArmDescription& arm = cell.arms.emplace_back(
         describe_arm(scene, setup, described.robots.back(), remote, covers, described.shown));
     if (setup.robot.admittance) {
-      arm = admitted(std::move(arm), *setup.robot.admittance, 1.0 / rate_hz);
+      try {
+        arm = admitted(std::move(arm), *setup.robot.admittance, 1.0 / rate_hz);
+      } catch (const SetupError& error) {
+        throw SetupError(error.what(), scene.file, setup.robot.admittance_line);
+      }
     }
     if (i == 0) continue;
     arm.name = scene.partners[i - 1].name;
