@@ -67,7 +67,7 @@ class Reader {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw SetupError(what, path_ + ":" + std::to_string(line_));
+    throw SetupError(what, path_, static_cast<int>(line_));
   }
 
   [[nodiscard]] std::optional<std::size_t> column(const std::string& name) const {

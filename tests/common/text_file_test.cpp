@@ -45,6 +45,7 @@ TEST(TextFile, WithoutAnEndIsRefused) {
 TEST(TextFile, ThatIsNotThereOrAFolderIsRefused) {
   const Folder folder;
   EXPECT_NE(refusal(folder / "none", 10).find("cannot be opened"), std::string::npos);
+  EXPECT_NE(refusal("", 10).find("the name of the file is empty"), std::string::npos);
   EXPECT_NE(refusal(folder / "", 10).find("a directory"), std::string::npos);
 }
 

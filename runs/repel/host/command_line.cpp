@@ -179,6 +179,20 @@ std::string closest(const std::string& word, std::span<const std::string> words)
   return best != words.end() && steps(*best) <= few ? *best : std::string();
 }
 
+void refuse_empty(const CLI::App& app) {
+  std::vector<const CLI::App*> all = app.get_subcommands({});
+  all.push_back(&app);
+  for (const CLI::App* each : all) {
+    for (const CLI::Option* option : each->get_options()) {
+      for (const std::string& value : option->results()) {
+        if (!value.empty()) continue;
+        throw CLI::ValidationError(option->get_name(),
+                                   "the value is empty; allowed: one with characters");
+      }
+    }
+  }
+}
+
 void set_up(CLI::App& app) {
   app.formatter(std::make_shared<Help>());
   app.failure_message(complaint);

@@ -67,6 +67,10 @@ class Output {
 /// option or its command. To be called before its options and commands are added.
 void set_up(CLI::App& app);
 
+/// Refuses values without a character, as `--log "$UNSET"` gives: the output would be lost without
+/// a word. To be called after the command line is parsed. @throws CLI::ValidationError
+void refuse_empty(const CLI::App& app);
+
 /// The body of main(): parses the command line and calls `run`. Ignores SIGPIPE, so the exit of a
 /// reader does not end the program. Returns the exit status: that of `run`, 0 for --help and
 /// --version, 2 for bad usage, `failure` after printing the message of an exception.
@@ -87,6 +91,7 @@ template <class Arguments>
       if (reword != nullptr) reword(app, words);
       std::reverse(words.begin(), words.end());  // as CLI11 wants them
       app.parse(std::move(words));
+      refuse_empty(app);
     } catch (const CLI::ParseError& error) {
       return app.exit(error) == 0 ? 0 : 2;
     }

@@ -108,6 +108,18 @@ TEST(CommandLine, ADashPrintsTheReportForAnotherProgram) {
   EXPECT_EQ(report.at("ticks"), 400);
 }
 
+TEST(CommandLine, AnEmptyNameIsNotTakenForNoFile) {
+  expect_complaints({{"empty --log ''", "teleop: --log: the value is empty"},
+                     {"empty --report ''", "teleop: --report: the value is empty"},
+                     {"empty --hand ''", "teleop: --hand: the value is empty"},
+                     {"check ''", "teleop: scene: the value is empty"}});
+}
+
+TEST(CommandLine, AChangeThatIsNoneSaysWhichFormItHas) {
+  expect_complaints({{"--set foo", "teleop: --set: 'foo'; allowed: PATH=VALUE"},
+                     {"--set =1", "teleop: --set: '=1'; allowed: PATH=VALUE"}});
+}
+
 TEST(CommandLine, BadUsageEndsWithTwoAndSaysWhy) {
   for (const char* arguments :
        {"--no-such-option", "--rate 0", "--rate fast", "--seconds -1", "--backend clay",

@@ -76,7 +76,7 @@ TEST(StepResponse, NamesTheLineThatIsWrong) {
     const std::string err = said(text);
     EXPECT_NE(err.find(words), std::string::npos) << err;
   };
-  expect("", "log.csv");
+  expect("", "log.csv: the file is empty");
   expect("time,commanded_1,measured_2\n0,0,0\n", "no column 'measured_1'");
   expect("time,a,b\n0,0,0\n", "no column 'commanded'");
   expect("commanded,measured\n0,0\n", "no column 'time'");

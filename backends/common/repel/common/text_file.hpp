@@ -18,8 +18,9 @@ namespace repel {
 /// @throws SetupError naming the file when it cannot be read or is larger than `most`
 [[nodiscard]] inline std::string text_of_file(const std::string& path, const std::string& what,
                                               std::size_t most = input_limits.file_bytes) {
+  if (path.empty()) throw SetupError("the name of the file is empty; allowed: " + what);
   // <filesystem> costs a tenth of the compile time of the kernel.
-  if (!path.empty() && std::ifstream(path + "/.")) {
+  if (std::ifstream(path + "/.")) {
     throw SetupError("this is a directory; allowed: " + what, path);
   }
   std::ifstream file(path, std::ios::binary);

@@ -74,7 +74,9 @@ void describe_changes(CLI::App& app, RunChoice& c) {
          [&c](const std::vector<std::string>& words) {
            for (const std::string& word : words) {
              const std::size_t equals = word.find('=');
-             if (equals == std::string::npos || equals == 0) return false;
+             if (equals == std::string::npos || equals == 0) {
+               throw CLI::ValidationError("--set", "'" + word + "'; allowed: PATH=VALUE");
+             }
              c.changes.push_back({word.substr(0, equals), word.substr(equals + 1)});
            }
            return true;
@@ -220,6 +222,7 @@ RunChoice choice_of(std::vector<std::string> words) {
   std::reverse(words.begin(), words.end());  // as CLI11 wants them
   try {
     all.app.parse(std::move(words));
+    host::refuse_empty(all.app);
     require_able(all.choice);
   } catch (const CLI::ParseError& error) {
     throw SetupError(error.what());
