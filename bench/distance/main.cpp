@@ -38,7 +38,7 @@ struct Options : QueryOptions {
 Options parse(Arguments arguments) {
   const std::vector<std::string> tasks = split(arguments.value("--task", ""));
   const bool sweep = arguments.has("--sweep");
-  return {query_options(arguments, "0.5"), tasks, sweep};
+  return {query_options(arguments, 0.5), tasks, sweep};
 }
 
 class Suite {

@@ -55,8 +55,12 @@ bool Arguments::has(const std::string& flag) {
 }
 
 std::string Arguments::value(const std::string& flag, const std::string& otherwise) {
+  return taken(flag).value_or(otherwise);
+}
+
+std::optional<std::string> Arguments::taken(const std::string& flag) {
   const auto found = std::find(words_.begin(), words_.end(), flag);
-  if (found == words_.end()) return otherwise;
+  if (found == words_.end()) return std::nullopt;
   if (found + 1 == words_.end()) throw std::invalid_argument(flag + " needs a value");
   std::string value = found[1];
   words_.erase(found, found + 2);
@@ -69,9 +73,9 @@ void Arguments::end() const {
   }
 }
 
-QueryOptions query_options(Arguments arguments, const char* seconds) {
+QueryOptions query_options(Arguments arguments, double seconds) {
   QueryOptions options{split(arguments.value("--rival", "")), arguments.has("--quick"),
-                       arguments.has("--list"), std::stod(arguments.value("--seconds", seconds))};
+                       arguments.has("--list"), arguments.number("--seconds", seconds, 1e-3, 1e6)};
   arguments.end();
   return options;
 }

@@ -3,11 +3,17 @@
 /// Common code of the programs that compare libraries.
 #pragma once
 
+#include <charconv>
 #include <functional>
+#include <optional>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <benchmark/benchmark.h>
+
+#include <repel/base/setup_error.hpp>
 
 namespace repel::bench {
 
@@ -23,10 +29,26 @@ class Arguments {
   /// The value after `flag`, else `otherwise`. Throws std::invalid_argument if the value is
   /// missing.
   [[nodiscard]] std::string value(const std::string& flag, const std::string& otherwise);
+  /// The number after `flag`, else `otherwise`. Throws std::invalid_argument for what is no number
+  /// from `low` to `high`.
+  template <class Number>
+  [[nodiscard]] Number number(const std::string& flag, Number otherwise, Number low, Number high) {
+    const std::optional<std::string> text = taken(flag);
+    if (!text) return otherwise;
+    Number number{};
+    const char* const end = text->data() + text->size();
+    const auto [rest, error] = std::from_chars(text->data(), end, number);
+    if (error == std::errc() && rest == end && number >= low && number <= high) return number;
+    throw std::invalid_argument(flag + " is '" + *text +
+                                "'; allowed: " + to_text(static_cast<double>(low)) + " to " +
+                                to_text(static_cast<double>(high)));
+  }
   /// Throws std::invalid_argument if an argument is left.
   void end() const;
 
  private:
+  [[nodiscard]] std::optional<std::string> taken(const std::string& flag);
+
   std::vector<std::string> words_;
 };
 
@@ -40,7 +62,7 @@ struct QueryOptions {
 
 /// What is left of `arguments`; `seconds` where none are given. Throws std::invalid_argument for
 /// what is unknown.
-[[nodiscard]] QueryOptions query_options(Arguments arguments, const char* seconds);
+[[nodiscard]] QueryOptions query_options(Arguments arguments, double seconds);
 
 /// The parts of a list "a,b,c".
 [[nodiscard]] std::vector<std::string> split(const std::string& names);

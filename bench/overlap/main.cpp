@@ -90,7 +90,7 @@ Rows measure(const QueryOptions& options, bool to_file) {
 }
 
 int run(const Arguments& arguments, bool to_file) {
-  const QueryOptions options = query_options(arguments, "0.3");
+  const QueryOptions options = query_options(arguments, 0.3);
   std::vector<std::string> names{"repel"};
   for (const Library& library : libraries()) {
     if (options.list) std::printf("%s (%s)\n", library.name.c_str(), library.version.c_str());

@@ -60,37 +60,26 @@ struct Options {
   std::string json;
 };
 
-long number(Arguments& arguments, const std::string& flag, long otherwise, long low, long high) {
-  const std::string value = arguments.value(flag, std::to_string(otherwise));
-  std::size_t used = 0;
-  const long parsed = std::stol(value, &used);
-  if (used != value.size() || parsed < low || parsed > high) {
-    throw std::invalid_argument(flag + " takes " + std::to_string(low) + " to " +
-                                std::to_string(high));
-  }
-  return parsed;
-}
-
 /// Throws std::logic_error for an unknown name.
 Options parse(Arguments arguments) {
   Options options;
   Setting& setting = options.setting;
   options.quick = arguments.has("--quick");
-  setting.pairs = static_cast<int>(number(arguments, "--pairs", 0, 0, 1000000));
+  setting.pairs = static_cast<int>(arguments.number("--pairs", 0L, 0L, 1000000L));
   options.sweep = setting.pairs == 0;
   const long ticks = !options.sweep ? 10000 : options.quick ? 50 : 2000;
-  setting.ticks = static_cast<int>(number(arguments, "--ticks", ticks, 1, 10000000));
+  setting.ticks = static_cast<int>(arguments.number("--ticks", ticks, 1L, 10000000L));
   if (!options.sweep) {
-    setting.near = static_cast<double>(number(arguments, "--near", 3, 1, 5000));
-    setting.threads = static_cast<int>(number(arguments, "--threads", 0, 0, 16));
+    setting.near = static_cast<double>(arguments.number("--near", 3L, 1L, 5000L));
+    setting.threads = static_cast<int>(arguments.number("--threads", 0L, 0L, 16L));
     const auto mode = coprocessor_mode_named(arguments.value("--mode", "together"));
     if (!mode) throw std::invalid_argument("--mode takes together or beside");
     setting.mode = *mode;
     setting.most_threads = std::max(1, setting.threads);
   }
-  setting.speed = 1e-3 * static_cast<double>(number(arguments, "--speed", 280, 1, 10000));
-  setting.bodies = static_cast<int>(number(arguments, "--bodies", 2, 1, 60));
-  setting.seed = static_cast<std::uint64_t>(number(arguments, "--seed", 1, 0, 1L << 62));
+  setting.speed = 1e-3 * static_cast<double>(arguments.number("--speed", 280L, 1L, 10000L));
+  setting.bodies = static_cast<int>(arguments.number("--bodies", 2L, 1L, 60L));
+  setting.seed = static_cast<std::uint64_t>(arguments.number("--seed", 1L, 0L, 1L << 62));
   options.rivals = bench::split(arguments.value("--rival", ""));
   options.json = arguments.value("--json", "");
   arguments.end();

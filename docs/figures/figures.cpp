@@ -185,9 +185,9 @@ void write_pulls(const std::filesystem::path& folder) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  if (argc != 2 || std::string(argv[1]) == "--help") {
+  if (argc != 2 || argv[1][0] == '-' || argv[1][0] == '\0') {
     std::fputs("figures FOLDER: writes the curves of the pictures to FOLDER as CSV\n", stderr);
-    return argc == 2 ? 0 : 2;
+    return argc == 2 && std::string(argv[1]) == "--help" ? 0 : 2;
   }
   const std::filesystem::path folder = argv[1];
   std::filesystem::create_directories(folder);

@@ -202,7 +202,7 @@ int main(int argc, char** argv) {
   std::string measure = name_of(QueryOptions{}.measure);
   read_command_line(
       argc, argv, "Measures the accuracy of separation() for every pair of kinds of shapes.",
-      {{"--samples", "poses of each pair of kinds and gap", &samples},
+      {{"--samples", "poses of each pair of kinds and gap", &samples, nullptr, 1.0, 1e6},
        {"--measure", "of the overlap: deepest_point, reduction or exact", nullptr, &measure},
        {"--write", "the page to write", nullptr, &write},
        {"--check", "the page whose promises must be these", nullptr, &check}});

@@ -17,6 +17,8 @@ struct Option {
   const char* help;
   double* number = nullptr;
   std::string* text = nullptr;
+  double least = 0.0;
+  double most = 9007199254740992.0;  ///< 2^53: whole numbers up to it are exact
 };
 
 inline void print_help(const char* what, const std::vector<Option>& options) {
@@ -30,7 +32,8 @@ inline void print_help(const char* what, const std::vector<Option>& options) {
   }
 }
 
-/// Parses the options; ends the program on --help (status 0) and on an unknown argument (2).
+/// Parses the options; ends the program on --help (status 0), and on an unknown argument or a
+/// number out of its range (2).
 inline void read_command_line(int argc, char** argv, const char* what,
                               const std::vector<Option>& options) {
   for (int i = 1; i < argc; ++i) {
@@ -44,9 +47,14 @@ inline void read_command_line(int argc, char** argv, const char* what,
       char* end = nullptr;
       const char* value = argv[++i];
       if (o.text != nullptr) *o.text = value;
-      if (o.number != nullptr) *o.number = std::strtod(value, &end);
-      known = o.text != nullptr || *end == '\0';
-      break;
+      known = true;
+      if (o.number == nullptr) break;
+      *o.number = std::strtod(value, &end);
+      const bool is_number = end != value && *end == '\0';
+      if (is_number && *o.number >= o.least && *o.number <= o.most) break;
+      std::fprintf(stderr, "%s: %s is '%s'; allowed: %.17g to %.17g\n", argv[0], o.name, value,
+                   o.least, o.most);
+      std::exit(2);
     }
     if (known) continue;
     std::fprintf(stderr, "%s: not understood: %s\n", argv[0], argv[i]);

@@ -108,12 +108,12 @@ int main(int argc, char** argv) {
   double seed = 1;
   double threads = 1;
   double group = -1;
-  read_command_line(argc, argv,
-                    "Compares the signed distance of random pairs of polytopes with the truth.",
-                    {{"--pairs", "how many pairs", &pairs},
-                     {"--seed", "of the random numbers", &seed},
-                     {"--threads", "the result does not depend on it", &threads},
-                     {"--group", "only this group of 20 pairs, as a report names it", &group}});
+  read_command_line(
+      argc, argv, "Compares the signed distance of random pairs of polytopes with the truth.",
+      {{"--pairs", "how many pairs", &pairs, nullptr, pairs_of_a_group, 1e12},
+       {"--seed", "of the random numbers", &seed},
+       {"--threads", "the result does not depend on it", &threads, nullptr, 1.0, 1000.0},
+       {"--group", "only this group of 20 pairs, as a report names it", &group}});
   Run run;
   run.seed = static_cast<std::uint64_t>(seed);
   run.groups = static_cast<long>(pairs) / pairs_of_a_group;

@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
   std::string write;
   read_command_line(argc, argv,
                     "Searches for the pairs of shapes that take separation() most iterations.",
-                    {{"--seconds", "how long to search", &seconds},
+                    {{"--seconds", "how long to search", &seconds, nullptr, 0.0, 1e6},
                      {"--seed", "of the random numbers", &seed},
                      {"--write", "the page that gets the result", nullptr, &write}});
   std::array<Bout, 9> bouts{{{"box", "box"},

@@ -144,5 +144,10 @@ int main(int argc, char** argv) {
     std::printf("%s %d\n", repel::test::compiler, repel::test::version);
     return 0;
   }
+  if (argc > 1) {
+    std::fputs("fixed_scenario [--compiler]: runs its ticks, or names what it was built by\n",
+               stderr);
+    return std::strcmp(argv[1], "--help") == 0 ? 0 : 2;
+  }
   return repel::test::run();
 }
