@@ -33,11 +33,17 @@ def separations(shapes: Sequence[_repel.Shape], X_W: Any, pairs: Any, *,
     batch: tuple[int, ...] = ()
     if isinstance(X_W, np.ndarray) and X_W.ndim == 4:
         batch, X_W = X_W.shape[:1], X_W.reshape(-1, *X_W.shape[2:])
+    for name, value, kind in (("options", options, _repel.QueryOptions),
+                              ("warm", warm, _repel.WarmStarts)):
+        if value is not None and not isinstance(value, kind):
+            raise TypeError(f"{name}: expected {kind.__name__}, got {type(value).__name__}")
     index = np.asarray(pairs)
     if index.ndim != 2 or index.shape[1] != 2:
         raise ValueError(f"pairs: expected indices of shapes (M, 2), got shape {index.shape}")
     if index.dtype.kind not in "iu":
         raise TypeError(f"pairs: expected whole numbers, got {index.dtype}")
+    if index.size and int(index.max()) > np.iinfo(np.int64).max:
+        raise IndexError(f"pairs name shape {index.max()}; allowed: 0 to {len(shapes) - 1}")
     rows = (*batch, len(index))
     if out is None:
         out = np.empty(rows, SEPARATION)
@@ -48,7 +54,8 @@ def separations(shapes: Sequence[_repel.Shape], X_W: Any, pairs: Any, *,
                          f"got {out.dtype} of shape {out.shape}")
     elif not out.flags.carray:
         raise ValueError("out: expected rows one after the other that may be written, got others")
-    _repel._fill_separations(list(shapes), X_W, batch[0] if batch else 1,
+    _repel._fill_separations(list(shapes), X_W, batch[0] if batch else None,
                              np.ascontiguousarray(index, np.int64),
-                             options or _repel.QueryOptions(), warm, out.reshape(-1).view(np.uint8))
+                             _repel.QueryOptions() if options is None else options, warm,
+                             out.reshape(-1).view(np.uint8))
     return out

@@ -82,7 +82,8 @@ class Capacities:
 
 def _check_all(name: str, values: Any, kind: type, instead: str = "") -> None:
     """Refuses what is no sequence of that kind, before it is taken for one."""
-    expected = "dict" if kind is Mapping else f"repel.{kind.__name__}"
+    own = "repel." if kind.__module__.startswith("repel") else ""
+    expected = "dict" if kind is Mapping else own + kind.__name__
     if isinstance(values, (str, bytes, os.PathLike)) or not isinstance(values, Sequence):
         raise TypeError(f"{name}: expected a sequence of {expected}, got {values!r}{instead}")
     for i, value in enumerate(values):

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from . import _repel
 from ._errors import SetupError, how_to_have
 from ._scenes import path_of
+from .description import _check_all
 
 if TYPE_CHECKING:
     from ._repel import Command, Tick
@@ -79,6 +80,9 @@ def run(scene: Any, *, seconds: float = 20.0, fast: bool = True, rate_hz: float 
     The report has the key `exit_status`: 0, or 3 to 5 where docs/recording.md says what happened.
     Raises SetupError if the scene cannot be run.
     """
+    _check_all("arguments", arguments, str)
+    if log is not None and not os.fspath(log):
+        raise SetupError("log is ''; allowed: the name of a file, or None")
     if not _is_inside(arguments):
         if on_tick is not None or stop is not None or len(hands) > 0:
             raise SetupError(

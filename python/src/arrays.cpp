@@ -29,15 +29,24 @@ bool has_shape(const Array& array, std::initializer_list<std::int64_t> shape) {
   return true;
 }
 
-/// The name of an argument, or of one row of it.
-std::string named(const char* name, std::optional<std::size_t> row) {
+/// Of an argument.
+struct Row {
+  std::size_t number = 0;
+  std::size_t of_batch = 0;  ///< rows of each batch; 0: there are no batches
+};
+
+/// The name of an argument, or of one row of it: X_W[3], in batches X_W[1, 0].
+std::string named(const char* name, std::optional<Row> row) {
   std::string text(name);
-  if (row) text.append(1, '[').append(std::to_string(*row)).append(1, ']');
-  return text;
+  if (!row) return text;
+  text += '[';
+  if (row->of_batch > 0) text += std::to_string(row->number / row->of_batch) + ", ";
+  text += std::to_string(row->of_batch > 0 ? row->number % row->of_batch : row->number);
+  return text + ']';
 }
 
 /// @throws SetupError unless `X` can be used
-const Pose& required(const Pose& X, const char* name, std::optional<std::size_t> row) {
+const Pose& required(const Pose& X, const char* name, std::optional<Row> row) {
   if (!is_finite(X)) throw SetupError(named(name, row) + ": an entry is not finite");
   if (!is_rigid(X)) {
     throw SetupError(named(name, row) +
@@ -47,7 +56,7 @@ const Pose& required(const Pose& X, const char* name, std::optional<std::size_t>
   return X;
 }
 
-Pose pose_from_matrix(const double* rows, const char* name, std::optional<std::size_t> row) {
+Pose pose_from_matrix(const double* rows, const char* name, std::optional<Row> row) {
   Pose X;
   for (int i = 0; i < 4; ++i) {
     for (int k = 0; k < 4; ++k) X.matrix()(i, k) = rows[4 * i + k];
@@ -61,12 +70,12 @@ Pose pose_from_matrix(const double* rows, const char* name, std::optional<std::s
 }
 
 Pose pose_from_quaternion(const double* p, const double* q, const char* name,
-                          std::optional<std::size_t> row) {
+                          std::optional<Row> row) {
   const Eigen::Quaterniond turn(q[0], q[1], q[2], q[3]);
   const double length = turn.norm();
   if (!(std::abs(length - 1.0) <= 1e-6)) {
     throw SetupError(named(name, row) + ": the quaternion has length " + to_text(length, 6) +
-                     "; allowed: 1 to 1e-6");
+                     "; allowed: 0.999999 to 1.000001");
   }
   Pose X = Pose::Identity();
   X.linear() = turn.normalized().toRotationMatrix();
@@ -89,6 +98,11 @@ void refuse_shape(const Array& found, const char* name, const char* expected) {
   }
   text.append(found.ndim() == 1 ? ",)" : ")");
   throw nb::value_error(text.c_str());
+}
+
+void refuse_type(nb::handle found, const std::string& name, const char* expected) {
+  const std::string type = nb::cast<std::string>(nb::handle(found.type()).attr("__name__"));
+  throw nb::type_error((name + ": expected " + expected + ", got " + type).c_str());
 }
 
 Array array_of(nb::handle value, const char* name, const char* expected) {
@@ -126,14 +140,14 @@ Pose pose_of(nb::handle value, const char* name) {
   return pose_from_quaternion(p.data(), q.data(), name, {});
 }
 
-std::vector<Pose> poses_of(nb::handle value, const char* name) {
+std::vector<Pose> poses_of(nb::handle value, const char* name, std::size_t of_batch) {
   std::vector<Pose> poses;
   if (!is_pair(value)) {
     const Array X = array_of(value, name, many_poses);
     if (!has_shape(X, {-1, 4, 4})) refuse_shape(X, name, many_poses);
     poses.reserve(X.shape(0));
     for (std::size_t i = 0; i < X.shape(0); ++i) {
-      poses.push_back(pose_from_matrix(X.data() + 16 * i, name, i));
+      poses.push_back(pose_from_matrix(X.data() + 16 * i, name, Row{i, of_batch}));
     }
     return poses;
   }
@@ -145,7 +159,7 @@ std::vector<Pose> poses_of(nb::handle value, const char* name) {
   }
   poses.reserve(p.shape(0));
   for (std::size_t i = 0; i < p.shape(0); ++i) {
-    poses.push_back(pose_from_quaternion(p.data() + 3 * i, q.data() + 4 * i, name, i));
+    poses.push_back(pose_from_quaternion(p.data() + 3 * i, q.data() + 4 * i, name, Row{i}));
   }
   return poses;
 }
@@ -168,7 +182,8 @@ std::vector<Vec3> points_of(nb::handle value, const char* name) {
   for (std::size_t i = 0; i < p.shape(0); ++i) {
     const double* at = p.data() + 3 * i;
     points.emplace_back(at[0], at[1], at[2]);
-    if (!is_finite(points.back())) throw SetupError(named(name, i) + ": an entry is not finite");
+    if (!is_finite(points.back()))
+      throw SetupError(named(name, Row{i}) + ": an entry is not finite");
   }
   return points;
 }

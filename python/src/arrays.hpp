@@ -29,6 +29,18 @@ using Array = nb::ndarray<const double, nb::numpy, nb::c_contig, nb::device::cpu
 /// @throws nanobind::value_error: "NAME: expected EXPECTED, got an array of shape (...)"
 [[noreturn]] void refuse_shape(const Array& found, const char* name, const char* expected);
 
+/// @throws nanobind::type_error: "NAME: expected EXPECTED, got TYPE"
+[[noreturn]] void refuse_type(nb::handle found, const std::string& name, const char* expected);
+
+/// `value` as a number, a word or a list of such; as a pointer, what a class of this module holds.
+/// @throws nanobind::type_error naming both
+template <class Type>
+[[nodiscard]] Type value_of(nb::handle value, const std::string& name, const char* expected) {
+  Type made{};
+  if (value.is_none() || !nb::try_cast(value, made)) refuse_type(value, name, expected);
+  return made;
+}
+
 /// The type of what `pose_of` takes, for signatures.
 inline const std::string pose_type =
     "numpy.typing.ArrayLike | tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike]";
@@ -37,7 +49,9 @@ inline const std::string pose_type =
 /// @throws SetupError for numbers that are not finite or not rigid
 [[nodiscard]] Pose pose_of(nb::handle value, const char* name);
 /// The same of N: (N, 4, 4), or a pair of (N, 3) and (N, 4).
-[[nodiscard]] std::vector<Pose> poses_of(nb::handle value, const char* name);
+/// @param of_batch rows of each batch, for errors; 0: there are no batches
+[[nodiscard]] std::vector<Pose> poses_of(nb::handle value, const char* name,
+                                         std::size_t of_batch = 0);
 
 /// Three numbers, finite.
 [[nodiscard]] Vec3 vector_of(nb::handle value, const char* name);

@@ -76,6 +76,8 @@ class OwnCamera {
     memory_.forget();
   }
 
+  [[nodiscard]] OwnCell* cell() const noexcept { return cell_; }
+
  private:
   /// Of all parts that the cell has anyway: they are no obstacles a second time.
   [[nodiscard]] std::vector<Shape> shapes() {
@@ -122,7 +124,7 @@ class OwnCamera {
 void bind_cameras(nb::module_& m) {
   static constexpr DepthCamera usual;
   static constexpr CellOptions cell_options;
-  nb::class_<OwnCamera>(m, "DepthCamera",
+  nb::class_<OwnCamera>(m, "DepthCamera", nb::type_slots(companion_slots<OwnCamera>),
                         "A camera beside a Cell: what it sees becomes loose parts of the cell.")
       .def(
           "__init__",

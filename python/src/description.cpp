@@ -19,7 +19,46 @@ namespace repel::python {
 namespace {
 
 double number(nb::handle from, const char* name) {
-  return nb::cast<double>(from.attr(name));
+  return value_of<double>(from.attr(name), name, "a number");
+}
+
+std::string text(nb::handle from, const char* name) {
+  return value_of<std::string>(from.attr(name), name, "a string");
+}
+
+bool is_so(nb::handle from, const char* name) {
+  return value_of<bool>(from.attr(name), name, "True or False");
+}
+
+Shape shape_of(nb::handle from) {
+  return *value_of<const Shape*>(from.attr("shape"), "shape", "a Shape");
+}
+
+/// None: `law` stays as it is.
+template <class Law>
+void read_law(nb::handle from, const char* name, Law& law) {
+  const nb::object value = from.attr(name);
+  if (!value.is_none()) law = *value_of<const ForceLaw*>(value, name, "a ForceLaw");
+}
+
+/// @throws nanobind::type_error unless it is of that class of repel/description.py
+void require_kind(nb::handle value, const std::string& name, const std::string& kind) {
+  const nb::object type = nb::module_::import_("repel.description").attr(kind.c_str());
+  if (!nb::isinstance(value, type)) refuse_type(value, name, ("a repel." + kind).c_str());
+}
+
+/// What a sequence holds, each of that class.
+std::vector<nb::object> all_of(nb::handle values, const std::string& name,
+                               const std::string& kind) {
+  if (!nb::isinstance<nb::iterable>(values)) {
+    refuse_type(values, name, ("a sequence of repel." + kind).c_str());
+  }
+  std::vector<nb::object> all;
+  for (nb::handle each : values) {
+    require_kind(each, name + "[" + std::to_string(all.size()) + "]", kind);
+    all.push_back(nb::borrow(each));
+  }
+  return all;
 }
 
 Pose optional_pose(nb::handle from, const char* name) {
@@ -37,12 +76,12 @@ Mat3 inertia_of(nb::handle from) {
 }
 
 ArmLink link_of(nb::handle from) {
-  const std::string type = nb::cast<std::string>(from.attr("type"));
+  const std::string type = text(from, "type");
   if (type != "revolute" && type != "prismatic") {
     throw SetupError("the type of a link is '" + type + "'; allowed: revolute, prismatic");
   }
   ArmLink link;
-  link.name = nb::cast<std::string>(from.attr("name"));
+  link.name = text(from, "name");
   link.joint_name = link.name;
   link.type = type == "revolute" ? JointType::revolute : JointType::prismatic;
   link.X_PJ = optional_pose(from, "X_PJ");
@@ -55,10 +94,11 @@ ArmLink link_of(nb::handle from) {
 
 ArmPart part_of(nb::handle from) {
   const nb::object link = from.attr("link");
-  return {.name = nb::cast<std::string>(from.attr("name")),
-          .shape = nb::cast<Shape>(from.attr("shape")),
-          .X_FP = optional_pose(from, "X_FP"),
-          .link = link.is_none() ? ArmPart::on_tool : nb::cast<int>(link)};
+  return {
+      .name = text(from, "name"),
+      .shape = shape_of(from),
+      .X_FP = optional_pose(from, "X_FP"),
+      .link = link.is_none() ? ArmPart::on_tool : value_of<int>(link, "link", "a whole number")};
 }
 
 /// @param own to which kinematics written in Python are added
@@ -105,14 +145,13 @@ ArmDescription arm_of(nb::handle from, const Trouble& trouble, std::vector<OwnKi
   if (const nb::object start = from.attr("start"); !start.is_none()) {
     arm.start = numbers_of(start, "start");
   }
-  if (const nb::object law = from.attr("self_law"); !law.is_none()) {
-    arm.self_law = nb::cast<ForceLaw>(law);
-  }
+  read_law(from, "self_law", arm.self_law);
   arm.options.tool_speed = number(from, "tool_speed");
   arm.options.drive_delay = number(from, "drive_delay");
-  arm.options.has_brakes = nb::cast<bool>(from.attr("has_brakes"));
+  arm.options.has_brakes = is_so(from, "has_brakes");
   for (nb::handle pair : from.attr("may_touch")) {
-    arm.may_touch.push_back(nb::cast<std::pair<int, int>>(pair));
+    arm.may_touch.push_back(
+        value_of<std::pair<int, int>>(pair, "may_touch", "pairs of indices of parts"));
   }
   if (const nb::object network = from.attr("network"); !network.is_none()) {
     arm.network = network_of(network, arm.model);
@@ -122,12 +161,9 @@ ArmDescription arm_of(nb::handle from, const Trouble& trouble, std::vector<OwnKi
 }
 
 ObstacleDescription obstacle_of(nb::handle from) {
-  ObstacleDescription obstacle{.name = nb::cast<std::string>(from.attr("name")),
-                               .shape = nb::cast<Shape>(from.attr("shape"))};
+  ObstacleDescription obstacle{.name = text(from, "name"), .shape = shape_of(from)};
   obstacle.X_WP = optional_pose(from, "X_WP");
-  if (const nb::object law = from.attr("law"); !law.is_none()) {
-    obstacle.law = nb::cast<ForceLaw>(law);
-  }
+  read_law(from, "law", obstacle.law);
   const nb::object along = from.attr("along_W");
   if (!along.is_none()) {
     const double duration = number(from, "duration");
@@ -137,23 +173,23 @@ ObstacleDescription obstacle_of(nb::handle from) {
 }
 
 LooseDescription loose_of(nb::handle from) {
-  LooseDescription loose{.name = nb::cast<std::string>(from.attr("name")),
-                         .shape = nb::cast<Shape>(from.attr("shape"))};
+  LooseDescription loose{.name = text(from, "name"), .shape = shape_of(from)};
   loose.X_WP = optional_pose(from, "X_WP");
-  if (const nb::object law = from.attr("law"); !law.is_none()) loose.law = nb::cast<ForceLaw>(law);
-  loose.at_start = nb::cast<bool>(from.attr("at_start"));
+  read_law(from, "law", loose.law);
+  loose.at_start = is_so(from, "at_start");
   loose.room = number(from, "room");
   loose.mass = number(from, "mass");
-  loose.is_mass_known = nb::cast<bool>(from.attr("is_mass_known"));
-  loose.can_be_held = nb::cast<bool>(from.attr("can_be_held"));
+  loose.is_mass_known = is_so(from, "is_mass_known");
+  loose.can_be_held = is_so(from, "can_be_held");
   return loose;
 }
 
 }  // namespace
 
 ArmModel arm_model_of(nb::handle from) {
+  require_kind(from, "arm", "Arm");
   ArmModel model;
-  model.name = nb::cast<std::string>(from.attr("name"));
+  model.name = text(from, "name");
   model.X_WB = optional_pose(from, "X_WB");
   model.X_LT = optional_pose(from, "X_LT");
   model.gravity_W = vector_of(from.attr("gravity_W"), "gravity_W");
@@ -164,8 +200,9 @@ ArmModel arm_model_of(nb::handle from) {
 Capacities capacities_of(nb::handle from) {
   Capacities limits;
   if (from.is_none()) return limits;
+  require_kind(from, "limits", "Capacities");
   const auto read = [&](const char* name, int& value, int most) {
-    value = nb::cast<int>(from.attr(name));
+    value = value_of<int>(from.attr(name), name, "a whole number");
     checked(name, value, 1.0, most, "");
   };
   read("bodies", limits.bodies, 1'000'000);
@@ -180,7 +217,7 @@ OwnDescription described(double rate_hz, nb::handle arms, nb::handle obstacles, 
                          const Trouble& trouble) {
   OwnDescription own;
   own.cell.rate_hz = rate_hz;
-  for (nb::handle arm : arms) {
+  for (nb::handle arm : all_of(arms, "arms", "Arm")) {
     ArmDescription& made = own.cell.arms.emplace_back(arm_of(arm, trouble, own.kinematics));
     if (const nb::object admittance = arm.attr("admittance"); !admittance.is_none()) {
       const double period = 1.0 / checked("rate_hz", rate_hz, 1.0, 1e5, "Hz");
@@ -192,8 +229,12 @@ OwnDescription described(double rate_hz, nb::handle arms, nb::handle obstacles, 
       }
     }
   }
-  for (nb::handle each : obstacles) own.cell.obstacles.push_back(obstacle_of(each));
-  for (nb::handle each : loose) own.cell.loose.push_back(loose_of(each));
+  for (nb::handle each : all_of(obstacles, "obstacles", "Obstacle")) {
+    own.cell.obstacles.push_back(obstacle_of(each));
+  }
+  for (nb::handle each : all_of(loose, "loose", "Loose")) {
+    own.cell.loose.push_back(loose_of(each));
+  }
   return own;
 }
 

@@ -100,4 +100,17 @@ class OwnCell {
   bool is_in_use_ = false;
 };
 
+/// For the collector of Python: what was made with `nb::keep_alive` of a cell refers to it.
+template <class Companion>
+int traverse_companion(PyObject* self, visitproc visit, void* arg) {
+  Py_VISIT(Py_TYPE(self));
+  if (!nb::inst_ready(self)) return 0;
+  const nb::object cell = nb::find(nb::inst_ptr<Companion>(self)->cell());
+  Py_VISIT(cell.ptr());
+  return 0;
+}
+template <class Companion>
+inline PyType_Slot companion_slots[] = {
+    {Py_tp_traverse, reinterpret_cast<void*>(traverse_companion<Companion>)}, {0, nullptr}};
+
 }  // namespace repel::python

@@ -24,6 +24,7 @@
 #include <repel/runs/setup/run_choice.hpp>
 #include <repel/scene/scene.hpp>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "tick.hpp"
 
@@ -93,13 +94,14 @@ class Watcher {
 };
 
 /// @param table [s, m/s, rad/s, ...] (rows, 7) or (rows, 11), the columns of read_hand_track
-runs::HandTrack track_of(nb::handle table) {
-  const std::vector<std::vector<double>> rows = nb::cast<std::vector<std::vector<double>>>(table);
+runs::HandTrack track_of(nb::handle table, const std::string& name) {
+  const auto rows =
+      value_of<std::vector<std::vector<double>>>(table, name, "numbers (rows, 7) or (rows, 11)");
   std::vector<runs::HandRow> track;
   track.reserve(rows.size());
   for (const std::vector<double>& x : rows) {
     if (x.size() != 7 && x.size() != 11) {
-      throw SetupError("hand: a row of " + std::to_string(x.size()) +
+      throw SetupError(name + ": a row of " + std::to_string(x.size()) +
                        " numbers; allowed: 7 or 11, see repel.run");
     }
     track.push_back(runs::hand_row_of(x));
@@ -133,7 +135,9 @@ nb::tuple run_scene(const std::string& file, double seconds, bool fast,
   for (const std::string& table : choice.hands) {
     session.tracks.push_back(runs::read_hand_track(table));
   }
-  for (const nb::handle table : hands) session.tracks.push_back(track_of(table));
+  for (std::size_t i = 0; i < hands.size(); ++i) {
+    session.tracks.push_back(track_of(hands[i], "hands[" + std::to_string(i) + "]"));
+  }
   runs::RunResult result;
   {
     const nb::gil_scoped_release others_go_on;

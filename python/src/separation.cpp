@@ -5,12 +5,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
 
 #include <repel/base/setup_error.hpp>
 
@@ -88,10 +90,7 @@ std::vector<const Shape*> shapes_of(const nb::list& list) {
   for (nb::handle each : list) {
     const Shape* shape = nullptr;
     if (!nb::try_cast(each, shape) || shape == nullptr) {
-      throw nb::type_error(("shapes[" + std::to_string(shapes.size()) +
-                            "]: expected a Shape, got " +
-                            nb::cast<std::string>(nb::handle(each.type()).attr("__name__")))
-                               .c_str());
+      refuse_type(each, "shapes[" + std::to_string(shapes.size()) + "]", "a Shape");
     }
     shapes.push_back(shape);
   }
@@ -105,18 +104,20 @@ std::vector<std::int64_t> indices_of(const Pairs& pairs, std::size_t shapes) {
   for (std::size_t i = 0; i < indices.size(); ++i) {
     const std::int64_t index = indices[i];
     if (index >= 0 && index < count) continue;
-    throw nb::index_error(("pairs[" + std::to_string(i / 2) + "] names shape " +
-                           std::to_string(index) + "; allowed: 0 to " + std::to_string(count - 1))
-                              .c_str());
+    throw nb::index_error(
+        ("pairs[" + std::to_string(i / 2) + "] names shape " + std::to_string(index) +
+         "; allowed: " + (count > 0 ? "0 to " + std::to_string(count - 1) : "none, of no shapes"))
+            .c_str());
   }
   return indices;
 }
 
-/// @param batches times that all shapes are placed: X_W has the poses of one after the other
-void ask_many(const nb::list& list, nb::handle X_W, std::size_t batches, const Pairs& pairs,
-              const QueryOptions& options, WarmStarts* warm, const Bytes& out) {
+/// @param times that all shapes are placed: X_W has the poses of one after the other; none: once
+void ask_many(const nb::list& list, nb::handle X_W, std::optional<std::size_t> times,
+              const Pairs& pairs, const QueryOptions& options, WarmStarts* warm, const Bytes& out) {
   const std::vector<const Shape*> shapes = shapes_of(list);
-  const std::vector<Pose> poses = poses_of(X_W, "X_W");
+  const std::vector<Pose> poses = poses_of(X_W, "X_W", times ? shapes.size() : 0);
+  const std::size_t batches = times.value_or(1);
   if (poses.size() != batches * shapes.size()) {
     throw nb::value_error(("X_W: expected a pose for each of " + std::to_string(shapes.size()) +
                            " shapes, got " + std::to_string(poses.size() / batches))
@@ -199,17 +200,16 @@ void bind_options(nb::module_& m) {
           "__init__",
           [](QueryOptions* options, const std::string& measure, double ignore_beyond,
              double relative_width, double tolerance, int iterations) {
-            const QueryOptions wanted{.tolerance = tolerance,
-                                      .iterations = iterations,
-                                      .ignore_beyond = ignore_beyond,
-                                      .relative_width = relative_width,
-                                      .measure = measure_of(measure)};
-            if (!detail::are_usable(wanted)) {
-              throw SetupError(
-                  "a number of the query options is out of range; allowed: iterations of 1 and "
-                  "more, all others of 0 and more");
-            }
-            new (options) QueryOptions(wanted);
+            constexpr double most = std::numeric_limits<double>::infinity();
+            checked("tolerance", tolerance, 0.0, most, "");
+            checked("iterations", iterations, 1.0, std::numeric_limits<int>::max(), "");
+            checked("ignore_beyond", ignore_beyond, 0.0, most, "m");
+            checked("relative_width", relative_width, 0.0, most, "");
+            new (options) QueryOptions{.tolerance = tolerance,
+                                       .iterations = iterations,
+                                       .ignore_beyond = ignore_beyond,
+                                       .relative_width = relative_width,
+                                       .measure = measure_of(measure)};
           },
           nb::kw_only(), nb::arg("measure") = "deepest_point",
           nb::arg("ignore_beyond") = usual.ignore_beyond,
@@ -245,9 +245,9 @@ void bind_separation(nb::module_& m) {
         "A pose [m] is a rigid 4x4 matrix, or (position (3,), unit quaternion w x y z (4,)).\n"
         "Raises SetupError for a pose that is not finite or not rigid.");
   m.def("_fill_separations", &ask_many, nb::arg("shapes"), nb::arg("X_W").none(),
-        nb::arg("batches"), nb::arg("pairs"), nb::arg("options"), nb::arg("warm").none(),
+        nb::arg("times").none(), nb::arg("pairs"), nb::arg("options"), nb::arg("warm").none(),
         nb::arg("out"),
-        nb::sig("def _fill_separations(shapes: list[Shape], X_W: object, batches: int, pairs: "
+        nb::sig("def _fill_separations(shapes: list[Shape], X_W: object, times: int | None, pairs: "
                 "numpy.ndarray, options: QueryOptions, warm: WarmStarts | None, out: "
                 "numpy.ndarray) -> None"));
 }

@@ -51,6 +51,8 @@ class Followed {
     }
   }
 
+  [[nodiscard]] OwnCell* cell() const noexcept { return cell_; }
+
  private:
   struct Each {
     PartId part;
@@ -115,7 +117,7 @@ void bind_simulations(nb::module_& m) {
       .def(nb::init<const nb::dict&>(), nb::arg("arrays"),
            nb::sig("def __init__(self, arrays: dict[str, numpy.ndarray]) -> None"))
       .def("changed", &Frozen::changed);
-  nb::class_<Followed>(m, "_Followed",
+  nb::class_<Followed>(m, "_Followed", nb::type_slots(companion_slots<Followed>),
                        "Loose parts that are where arrays of a simulation have them.")
       .def(nb::init<OwnCell&, Array, Array, const std::vector<std::size_t>&,
                     const std::vector<std::string>&>(),

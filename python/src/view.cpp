@@ -58,6 +58,8 @@ class OwnView : public ShapeListener {
     view_.reset();
   }
 
+  [[nodiscard]] OwnCell* cell() const noexcept { return cell_; }
+
  private:
   void shaped(PartId part, const Shape& shape) override { view_->reshape(part, shape); }
 
@@ -84,7 +86,7 @@ visual::ViewOptions options_of(const std::string& address, int port, bool pages_
 }  // namespace
 
 void bind_views(nb::module_& m) {
-  nb::class_<OwnView>(m, "LiveView",
+  nb::class_<OwnView>(m, "LiveView", nb::type_slots(companion_slots<OwnView>),
                       "The page of the live view for a Cell that your program ticks. A context "
                       "manager: at its end the page is no longer served.")
       .def(

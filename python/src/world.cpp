@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/vector.h>
 
 #include <repel/base/setup_error.hpp>
 #include <repel/schedule/coprocessor.hpp>
@@ -136,14 +137,13 @@ void bind_world(nb::module_& m) {
           "add_pairs",
           [](OwnWorld& world, const nb::sequence& group_a, const nb::sequence& group_b,
              const ForceLaw& law) {
-            int count = 0;
-            for (nb::handle a : group_a) {
-              for (nb::handle b : group_b) {
-                (void)world.add_pair(nb::cast<int>(a), nb::cast<int>(b), law);
-                ++count;
-              }
+            constexpr const char* expected = "the numbers of parts";
+            const auto all_a = value_of<std::vector<int>>(group_a, "group_a", expected);
+            const auto all_b = value_of<std::vector<int>>(group_b, "group_b", expected);
+            for (const int a : all_a) {
+              for (const int b : all_b) (void)world.add_pair(a, b, law);
             }
-            return count;
+            return all_a.size() * all_b.size();
           },
           nb::arg("group_a"), nb::arg("group_b"), nb::arg("law"),
           nb::sig("def add_pairs(self, group_a: collections.abc.Sequence[int], group_b: "

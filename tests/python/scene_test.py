@@ -158,11 +158,24 @@ def test_what_a_callback_raises_ends_the_run(scenes):
         repel.run(scenes / "empty.yaml", on_tick=print, arguments=["--quiet"])
 
 
+def test_hands_that_are_no_tables_are_refused_by_name(scenes):
+    if not hasattr(repel._repel, "run_scene"):
+        pytest.skip("built without runs")
+    with pytest.raises(TypeError, match=r"hands\[0\]: expected numbers"):
+        repel.run(scenes / "empty.yaml", seconds=0.1, hands=[np.zeros(3)])
+    with pytest.raises(repel.SetupError, match=r"hands\[1\]: a row of 5 numbers"):
+        repel.run("two_arms", seconds=0.1, hands=[np.zeros((1, 7)), np.zeros((1, 5))])
+
+
 def test_what_the_program_refuses_is_an_error(teleop, tmp_path, monkeypatch):
     with pytest.raises(repel.SetupError, match="no such scene; allowed: a file, or one of"):
         repel.run("nonesuch")
     with pytest.raises(repel.SetupError, match="--nonesuch"):
         repel.run("empty", arguments=["--nonesuch"])
+    with pytest.raises(TypeError, match=r"arguments\[0\]: expected a str, got int"):
+        repel.run("empty", arguments=[5])
+    with pytest.raises(repel.SetupError, match="log is ''"):
+        repel.run("empty", log="")
     with pytest.raises(repel.SetupError, match="backend"):
         repel.run("empty", backend="marble")
     bad = tmp_path / "bad.yaml"

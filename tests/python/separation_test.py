@@ -120,7 +120,8 @@ NAN = np.full((4, 4), np.nan)
     (2 * EYE, repel.SetupError, "X_WA: the last row"),
     (np.diag([1.0, 1, -1, 1]), repel.SetupError, "X_WA: the rotation is not"),
     (np.diag([1.0, 1, 1 + 1e-6, 1]), repel.SetupError, "X_WA: the rotation is not"),
-    (([0, 0, 0], [1, 1, 0, 0]), repel.SetupError, "X_WA: the quaternion has length 1.41"),
+    (([0, 0, 0], [1, 1, 0, 0]), repel.SetupError,
+     "X_WA: the quaternion has length 1.41.*; allowed: 0.999999 to 1.000001"),
     (([0, 0], [1, 0, 0, 0]), ValueError, r"X_WA: .*shape \(2,\)"),
     (([0, 0, np.nan], [1, 0, 0, 0]), repel.SetupError, "X_WA: an entry is not finite"),
 ])
@@ -142,11 +143,16 @@ def test_poses_too_far_off_are_refused():
     ({"X_W": np.stack([EYE] * 3)}, ValueError, "X_W: expected a pose for each of 2 shapes, got 3"),
     ({"X_W": EYE}, ValueError, r"X_W: expected N rigid poses.*got an array of shape \(4, 4\)"),
     ({"X_W": np.stack([EYE, NAN])}, repel.SetupError, r"X_W\[1\]: an entry is not finite"),
+    ({"X_W": np.stack([[EYE, EYE], [EYE, NAN]])}, repel.SetupError, r"X_W\[1, 1\]: an entry"),
     ({"pairs": [[0, 2]]}, IndexError, r"pairs\[0\] names shape 2; allowed: 0 to 1"),
     ({"pairs": [[0, -1]]}, IndexError, r"pairs\[0\] names shape -1"),
     ({"pairs": [0, 1]}, ValueError, r"pairs: expected indices.*shape \(2,\)"),
     ({"pairs": [[0.0, 1.0]]}, TypeError, "pairs: expected whole numbers"),
     ({"shapes": [repel.Shape.sphere(1.0), "box"]}, TypeError, r"shapes\[1\]: expected a Shape"),
+    ({"shapes": [], "X_W": np.zeros((0, 4, 4))}, IndexError, "allowed: none, of no shapes"),
+    ({"pairs": np.array([[0, 2**63 + 1]], np.uint64)}, IndexError, "shape 9223372036854775809"),
+    ({"options": 0}, TypeError, "options: expected QueryOptions, got int"),
+    ({"warm": []}, TypeError, "warm: expected WarmStarts, got list"),
     ({"warm": repel.WarmStarts(2)}, ValueError, "warm: expected 1 rows"),
     ({"out": np.zeros(1)}, ValueError, "out: expected 1 rows of repel.SEPARATION"),
 ])
@@ -167,7 +173,8 @@ def test_batches_that_cannot_be_answered_are_refused_by_name(change, kind, words
     (lambda: repel.ForceLaw(range=-1.0), "range is -1 m"),
     (lambda: repel.ForceLaw(passable=True), "ceiling of a passable body"),
     (lambda: repel.QueryOptions(measure="depth"), "measure is 'depth'; allowed: deepest_point"),
-    (lambda: repel.QueryOptions(iterations=0), "query options"),
+    (lambda: repel.QueryOptions(iterations=0), "iterations is 0; allowed: 1 to"),
+    (lambda: repel.QueryOptions(tolerance=-1.0), "tolerance is -1; allowed: 0 to"),
     (lambda: repel.WarmStarts(-1), "count is -1"),
 ])
 def test_numbers_out_of_range_are_refused(build, words):

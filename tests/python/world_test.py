@@ -59,6 +59,10 @@ def test_a_world_answers_for_its_pairs():
     (lambda w: w.place(1, EYE, np.full(6, np.nan)), repel.SetupError, "V_WB: an entry"),
     (lambda w: w.force_on(2), repel.SetupError, "body is 2"),
     (lambda w: repel.World(measure="none"), repel.SetupError, "measure is 'none'"),
+    (lambda w: w.add_pairs([0.5], [1], repel.ForceLaw()), TypeError, "group_a: expected the numb"),
+    (lambda w: repel.World(limits=5), TypeError, "limits: expected a repel.Capacities, got int"),
+    (lambda w: repel.World(limits=repel.Capacities(bodies="x")), TypeError,
+     "bodies: expected a whole number, got str"),
 ])
 def test_a_world_refuses_by_name(wrong, kind, words):
     world = repel.World()
@@ -215,6 +219,18 @@ def test_cells_that_cannot_be_are_refused(change, words):
         gantry_cell(**change)
 
 
+@pytest.mark.parametrize("change, words", [
+    ({"arms": [None]}, r"arms\[0\]: expected a repel.Arm, got NoneType"),
+    ({"arms": 5}, "arms: expected a sequence of repel.Arm, got int"),
+    ({"obstacles": [None]}, r"obstacles\[0\]: expected a repel.Obstacle, got NoneType"),
+    ({"obstacles": [repel.Obstacle("o", None)]}, "shape: expected a Shape, got NoneType"),
+    ({"loose": [repel.Loose("o", repel.Shape.sphere(1.0), mass="1")]}, "mass: expected a number"),
+])
+def test_what_no_cell_is_made_of_is_refused_by_name(change, words):
+    with pytest.raises(TypeError, match=words):
+        repel.Cell(rate_hz=1000.0, **{"arms": [], **change})
+
+
 def test_links_alone_make_kinematics():
     if not hasattr(repel, "SimulatedArm"):
         pytest.skip("built without robots")
@@ -252,6 +268,23 @@ def test_circles_through_a_cell_are_collected():
     gone = weakref.ref(holder)
     holder.cell.step(np.zeros(3), np.zeros(3), repel.Command())
     del holder
+    gc.collect()
+    assert gone() is None
+
+
+@pytest.mark.parametrize("beside", [
+    lambda cell: repel.LiveView(cell, port=0),
+    lambda cell: repel.DepthCamera(cell, width=4, height=3, fx=3, fy=3, cx=1.5, cy=1.0),
+])
+def test_circles_through_what_is_beside_a_cell_are_collected(beside):
+    if not hasattr(repel, "LiveView") or not hasattr(repel, "DepthCamera"):
+        pytest.skip("built without views or cameras")
+    kinematics = Gantry()
+    kinematics.beside = beside(gantry_cell(kinematics))
+    gone = weakref.ref(kinematics)
+    gc.collect()
+    assert gone() is not None
+    del kinematics
     gc.collect()
     assert gone() is None
 
