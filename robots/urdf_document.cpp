@@ -144,6 +144,7 @@ std::string format_hint(std::string_view root) {
 }  // namespace
 
 std::string text_of_description(const std::string& path) {
+  if (path.empty()) throw SetupError("the name of the file is empty; allowed: a robot description");
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw SetupError("cannot be opened", path);
   std::error_code error;

@@ -299,6 +299,7 @@ TEST(Mjcf, WhatIsNoSerialArmIsRefusedByName) {
   const std::string path = folder.with("m.xml", mjcf_of(link(hinge)));
   EXPECT_TRUE(says(complaint(path, {.tip = "nowhere"}), "no body or site 'nowhere'"));
   EXPECT_TRUE(says(complaint(folder / "none.xml"), "none.xml: cannot be opened"));
+  EXPECT_TRUE(says(complaint(""), "the name of the file is empty"));
   try {
     (void)load_arm(path);
     FAIL() << "nothing was thrown";
